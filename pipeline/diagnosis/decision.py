@@ -2,9 +2,19 @@
 
 Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
 (block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
-decided here; of a sweep `sweep/diagnose.py` may overrule it, where the data refute what is decided
-(`overruled`). All log quantities are in nats. Which input of a gear explains its curve is not decided here:
+decided here. All log quantities are in nats. Which input of a gear explains its curve is not decided here:
 `whole_gear/identification.py` compares chi squares of inputs that have no prior.
+
+Of a sweep `sweep/diagnose.py` may overrule it in five places, in this order; all but the first say `unknown`,
+by `overruled`:
+
+| where | what it sees |
+|---|---|
+| `sweep/limits.py`, `drowned` | noise or leaps above the simulated twist: `insufficient` |
+| `sweep/limits.py`, `broken_limit` | the best explanation breaks a physical limit, or the output slips |
+| `sweep/limits.py`, `slow_noise` | a `consistent` record whose slow noise hides an effect |
+| `sweep/backward.py`, `sweep/late_angle.py` | a torque or an angle that is read late |
+| `sweep/held_out.py`, `refuted` | causes that make most levels of a channel, held out as wholes, worse |
 """
 
 from __future__ import annotations
@@ -68,6 +78,15 @@ def probability(cause: str, explanations: Iterable[Scored]) -> float:
     weight = np.exp(score - score.max())
     having = np.array([cause in causes for causes, _ in scored])
     return min(1.0, float(weight[having].sum() / weight.sum()))
+
+
+def beside_unweighed(probability: float, rivals: Collection[str]) -> float:
+    """Of a cause beside rivals that no explanation of the race stands for: even odds at most.
+
+    Where a programme has one rate or no time, friction and a lag may make one loop; the race has weighed only
+    such forms of either as it has elements for.
+    """
+    return min(probability, EVEN_ODDS) if rivals else probability
 
 
 def probability_of_gain(nats: float) -> float:

@@ -13,10 +13,14 @@ class LeftOut:
     ----------
     channel : of a record, or "specimen".
     values : of those left out; of a whole `level` its least and its largest; none where `each` of so many was
-        left out in turn.
+        left out in turn, or where they have names.
+    names : of the units left out.
+    of_units : of cycles that units number differently, in place of `values`: each unit's name and numbers.
     """
 
     channel: str
     values: tuple[float, ...] = ()
     level: bool = False
     each: int = 0
+    names: tuple[str, ...] = ()
+    of_units: tuple[tuple[str, tuple[float, ...]], ...] = ()

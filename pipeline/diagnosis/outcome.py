@@ -95,8 +95,9 @@ class Gain:
     noise_floor: float
     unit: str = "arcsec"
     held_out_rows: tuple[int, ...] = ()
+    """Of the file, from 0; where means were judged, all rows that they are of."""
     left: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False, repr=False)
-    """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
+    """Measured less predicted angle of what was judged: `before`, `calibrated`, `after`."""
     stated_std: float = 0.0
     """Root mean square of the standard deviation that what was learnt states for these rows, noise aside."""
     elsewhere: bool = False

@@ -174,7 +174,7 @@ def _beyond(ratio: float) -> bool:
 
 
 def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | None:
-    simulated = 2 * points.torque_Nm * prediction.compliance + prediction.gap_arcsec
+    simulated = prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm)
     if not np.all(simulated > 0):
         return None
     ratio = float(np.median((points.angle_plus_arcsec - points.angle_minus_arcsec) / simulated))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import hypot
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 
 REFERENCE_C = 20.0
 """Reference temperature [°C], ISO 1:2022; the gap of a design is the one there."""
+
+Torque = TypeVar("Torque", float, np.ndarray)
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,14 @@ class Prediction:
         if self.measured_bend is None:
             return self
         return replace(self, bend=self.measured_bend, measured_bend=None)
+
+    def twist_arcsec(self, low_Nm: Torque, high_Nm: Torque) -> Torque:
+        """From one torque to a higher one along the line, with the gap where they differ in sign.
+
+        From −T to +T it is the total 2T·compliance + gap.
+        """
+        crossed = (low_Nm < 0) & (high_Nm > 0)
+        return (high_Nm - low_Nm) * self.compliance + crossed * self.gap_arcsec
 
     def scale_arcsec(self, torque_Nm: float) -> float:
         """Size of the predicted angle at a torque: a natural unit for effects of unknown size."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from flexspline.geometry.listed import listed
@@ -73,5 +73,20 @@ def left_out_words(left: LeftOut) -> str:
         low, high = (format(value, words.digits) for value in left.values)
         ends = low if low == high else f"{low} to {high}"
         return f"{words.level} {ends} {words.unit}"
-    values = listed((f"{value:g}" for value in left.values), words.many)
-    return f"{words.many if len(left.values) > 1 else words.many[:-1]} {values}"
+    if left.of_units:
+        each = (
+            f"{_counted(words, map(_plain, own))} of unit {unit}" for unit, own in left.of_units
+        )
+        return listed(each, CHANNELS["unit"].many)
+    return _counted(words, left.names or map(_plain, left.values))
+
+
+def _plain(value: float) -> str:
+    return f"{value:g}"
+
+
+def _counted(words: ChannelWords, values: Iterable[str]) -> str:
+    """Some of what a channel has many of, one by one."""
+    shown = list(values)
+    many = words.many if len(shown) > 1 else words.many.removesuffix("s")
+    return f"{many} {listed(shown, words.many)}"

@@ -25,8 +25,8 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 
-NAMING_NATS = RIVAL_EVIDENCE
-"""The simulation within its uncertainty is a rival too."""
+OVER_SIMULATION_NATS = RIVAL_EVIDENCE
+"""Over the simulation within its uncertainty, which is a rival too."""
 
 
 def decide(
@@ -34,7 +34,7 @@ def decide(
 ) -> Decision:
     """The decision on hypotheses of which some beats the simulation, or some unit is beyond the envelope."""
     best = next(h for h in hypotheses if h.causes)
-    if UNNAMED in best.causes and best.score > NAMING_NATS:
+    if UNNAMED in best.causes and best.score > OVER_SIMULATION_NATS:
         left = _unnamed(best, hypotheses)
         return decided((), (left,), named_rms=0.0, unnamed_rms=left.rms)
     named = [h for h in hypotheses if h.causes and UNNAMED not in h.causes]
@@ -59,7 +59,7 @@ def decide(
             rms((term.column * best.best.mean[i])[term.column != 0]),
             () if best.own is None else (names[best.own],),
         ))  # fmt: skip
-    sure = best.score > NAMING_NATS and all(map(is_significant, found))
+    sure = best.score > OVER_SIMULATION_NATS and all(map(is_significant, found))
     return decided(
         found, (), named_rms=hypot(*(c.rms_arcsec for c in found)), unnamed_rms=0.0, sure=sure
     )

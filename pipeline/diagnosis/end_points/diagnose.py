@@ -1,10 +1,10 @@
 """End points and a prediction in, a verdict out.
 
 Rules, with their numbers:
-- No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis NAMING_NATS better than the
-  simulation within its uncertainty: `consistent`.
+- No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis OVER_SIMULATION_NATS better
+  than the simulation within its uncertainty: `consistent`.
 - Otherwise the likeliest cause is listed with every rival within the limits of docs/contract.md: 4 nats of
-  evidence or 6 of penalised likelihood. Any rival left, or evidence below NAMING_NATS: `ambiguous`;
+  evidence or 6 of penalised likelihood. Any rival left, or evidence below OVER_SIMULATION_NATS: `ambiguous`;
   none: `named`.
 - A curve of no cause that is the likeliest: `unknown`, in channel `torque_Nm`.
 """
@@ -17,7 +17,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.decision import CONSISTENT
-from flexspline.pipeline.diagnosis.end_points.decide import NAMING_NATS, decide
+from flexspline.pipeline.diagnosis.end_points.decide import OVER_SIMULATION_NATS, decide
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.evidence import UnitDeviations, unit_evidence
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -52,24 +52,23 @@ def diagnose_end_points(
     deviations, names = unit_deviations(points, prediction)
     rig = rig_of(points, prediction)
     envelopes = tuple(
-        envelope(
-            design, prediction.compliance, prediction.gap_arcsec, float(t), deviations.readings[0]
-        )
+        envelope(design, prediction, float(t), deviations.readings[0])
         for t in np.unique(points.torque_Nm)
     )
     null = unit_evidence(deviations, ())
     units = unit_findings(points, deviations, names, envelopes)
     furthest = sorted(range(len(units)), key=lambda u: units[u].p_value)
-    some = _some(points, deviations, names, furthest)
-    racing, raced = (deviations, names) if some is points else unit_deviations(some, prediction)
+    rows = _raced_rows(points, deviations, names, furthest)
+    some = points.rows(rows)
+    racing, raced = unit_deviations(some, prediction)
     suspects = [raced.index(names[u]) for u in furthest[:SUSPECTS]]
     hypotheses = race(some, rig, racing, suspects)
     best = next(h for h in hypotheses if h.causes)
     decision = CONSISTENT
     plans: tuple[PlanSeparation, ...] = ()
-    if best.score > NAMING_NATS or not all(u.within for u in units):
+    if best.score > OVER_SIMULATION_NATS or not all(u.within for u in units):
         beyond = [u for u in units if not u.within]
-        if best.score <= NAMING_NATS and len(beyond) == 1 and len(names) > 1:
+        if best.score <= OVER_SIMULATION_NATS and len(beyond) == 1 and len(names) > 1:
             # one unit is what is to be explained, even where another cause fits all units a little better
             alone = raced.index(beyond[0].unit)
             hypotheses = [h for h in hypotheses if not h.causes or h.own == alone]
@@ -85,11 +84,11 @@ def diagnose_end_points(
     analysis = EndPointAnalysis(
         envelopes, units, mid_positions(deviations, prediction), null.common, null.share, kept.reading,
         tuple(hypotheses), plans, several_torques(deviations), calibration_of(kept, prediction),
-        len(some.unit),
+        len(rows),
     )  # fmt: skip
     outcome = DiagnosisOutcome(
         decision.verdict, decision.causes, decision.unexplained,
-        gain_of(racing, best, raced) if named else None,
+        gain_of(racing, best, raced, rows) if named else None,
         next_measurement(decision, plans, worst),
     )  # fmt: skip
     model = None
@@ -100,16 +99,12 @@ def diagnose_end_points(
     return outcome, analysis, model
 
 
-def _some(
+def _raced_rows(
     points: EndPoints, deviations: UnitDeviations, names: Sequence[str], furthest: Sequence[int]
-) -> EndPoints:
-    """All rows, or, of a very large file, those of evenly chosen units and of the suspects."""
+) -> np.ndarray:
+    """All rows, or, of a very large file, those of evenly chosen units and of the suspects; by indices."""
     if len(points.unit) <= MOST_RACE_ROWS:
-        return points
+        return np.arange(len(points.unit))
     step = -(-len(points.unit) // MOST_RACE_ROWS)
     chosen = set(range(0, len(names), step)) | set(furthest[:SUSPECTS])
-    rows = np.sort(np.concatenate([r for u, r in enumerate(deviations.unit_rows) if u in chosen]))
-    return EndPoints(
-        points.path, tuple(points.unit[i] for i in rows), points.torque_Nm[rows],
-        points.angle_plus_arcsec[rows], points.angle_minus_arcsec[rows],
-    )  # fmt: skip
+    return np.sort(np.concatenate([r for u, r in enumerate(deviations.unit_rows) if u in chosen]))

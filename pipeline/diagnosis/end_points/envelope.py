@@ -17,6 +17,7 @@ from flexspline.pipeline.backlash import (
     play_clearance,
 )
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
+from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.play_spread import play_distribution
 
 ENVELOPE_SIGMAS = 6.0
@@ -47,7 +48,7 @@ class Envelope:
 
     Attributes
     ----------
-    total_arcsec : 2T·compliance + gap.
+    total_arcsec : as predicted of the design itself.
     play_um, play_weight : (k,) nodes of the play's distribution, none beyond c_max.
     play_arcsec : (k,) what each adds beyond the design's play.
     straight_std_arcsec : of flank clearance, Young's modulus and reading, which enter as a sum.
@@ -129,13 +130,9 @@ class Envelope:
 
 
 def envelope(
-    design: Design,
-    compliance: float,
-    gap_arcsec: float,
-    torque_Nm: float,
-    reading_std_arcsec: float,
+    design: Design, prediction: Prediction, torque_Nm: float, reading_std_arcsec: float
 ) -> Envelope:
-    """Of a design at ±T [N·m]; `compliance` [arcsec per N·m].
+    """Of a design and its prediction at ±T [N·m].
 
     Young's modulus and flank clearance enter the sum linearly and are normal. Play enters by the
     design's model: normal about c, and only as far as c_max, where the involute model ends.
@@ -151,13 +148,13 @@ def envelope(
         play, weight = np.array([c]), np.ones(1)
     here = _play_arcsec(design, c)
     added = np.array([_play_arcsec(design, float(p)) for p in play]) - here
-    windup = 2 * torque_Nm * compliance
+    total = prediction.twist_arcsec(-torque_Nm, torque_Nm)
     straight = hypot(
-        windup * doubt.youngs_modulus_pct / 100,
+        (total - prediction.gap_arcsec) * doubt.youngs_modulus_pct / 100,
         _flank_arcsec(design, doubt.flank_clearance_um),
         reading_std_arcsec,
     )
-    return Envelope(design, torque_Nm, windup + gap_arcsec, play, weight, added, straight)
+    return Envelope(design, torque_Nm, total, play, weight, added, straight)
 
 
 def _flank_arcsec(design: Design, clearance_um: float) -> float:

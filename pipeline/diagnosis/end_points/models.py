@@ -84,10 +84,13 @@ def _model(prediction: Prediction, term: EndPointRegressor, amplitude: float) ->
     return ExtendedModel(prediction.compliance, prediction.gap_arcsec, {}, elements, {})
 
 
-def gain_of(deviations: UnitDeviations, best: Hypothesis, names: Sequence[str]) -> Gain | None:
+def gain_of(
+    deviations: UnitDeviations, best: Hypothesis, names: Sequence[str], rows: np.ndarray
+) -> Gain | None:
     """Each unit in turn predicted from the others; errors of totals [arcsec].
 
-    None for what is one unit's own, which no other unit can predict, and for fewer than three units.
+    `rows` : (n,) of the file, that the deviations are of. None for what is one unit's own, which no other
+    unit can predict, and for fewer than three units.
     """
     if deviations.units < FEWEST_UNITS or best.own is not None:
         return None
@@ -110,5 +113,5 @@ def gain_of(deviations: UnitDeviations, best: Hypothesis, names: Sequence[str]) 
             after[out] -= amplitude * term.column[out]
     return Gain(
         LeftOut("unit", each=len(names)), rms(deviations.deviation), rms(calibrated), rms(after),
-        best.best.reading, held_out_rows=tuple(range(len(deviations.deviation))),
+        best.best.reading, held_out_rows=tuple(map(int, rows)),
     )  # fmt: skip

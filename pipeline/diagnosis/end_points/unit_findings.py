@@ -30,7 +30,7 @@ def unit_deviations(
     total = points.angle_plus_arcsec - points.angle_minus_arcsec
     angles = np.concatenate([points.angle_plus_arcsec, points.angle_minus_arcsec])
     deviations = UnitDeviations(
-        total - 2 * points.torque_Nm * prediction.compliance - prediction.gap_arcsec,
+        total - prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm),
         (points.angle_plus_arcsec + points.angle_minus_arcsec) / 2,
         points.torque_Nm,
         np.array([code[u] for u in points.unit]),

@@ -20,8 +20,8 @@ class History:
         the wave generator was locked.
     readings : (n,) of how many readings each row is the mean; None where it is one of each.
     exact : whether torque is a calculated course, which has no noise.
-    number : (n,) of each row, or the mean number of the rows that it is the mean of, where time was not
-        recorded; None where rows are as they were read.
+    number : (n,) of each row in the file, or the mean number of the rows that it is the mean of, where time
+        was not recorded; None where the rows are those of the file.
     """
 
     torque_Nm: np.ndarray
@@ -97,7 +97,12 @@ class History:
         return found
 
     @property
+    def unit_and_cycle(self) -> np.ndarray:
+        """(n,) one number for each cycle of each unit, in the order of units and of their cycles."""
+        return np.asarray(self.unit * (int(self.cycle.max()) + 1) + self.cycle)
+
+    @property
     def cycle_slices(self) -> list[np.ndarray]:
         """Row indices of each cycle of each unit, in order."""
-        key = self.unit * (int(self.cycle.max()) + 1) + self.cycle
+        key = self.unit_and_cycle
         return [np.flatnonzero(key == k) for k in np.unique(key)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -59,9 +59,24 @@ class Sweep:
     """None where the rows are those of the file."""
     wrong: tuple[WrongReadings, ...] = ()
     """Readings whose rows were left out."""
+    went_to: np.ndarray | None = None
+    """Of each data row of the file, the row here that it is or went into, −1 where it was left out; None
+    where the rows are those of the file."""
 
     def __len__(self) -> int:
         return len(self.angle_arcsec)
+
+    @property
+    def own_cycle(self) -> np.ndarray:
+        """(n,) cycle as the file numbers it."""
+        first = np.array([numbers[0] for numbers in self.cycles])
+        return np.asarray(self.history.cycle + first[self.history.unit])
+
+    def file_rows(self, chosen: np.ndarray) -> np.ndarray:
+        """Data rows of the file, from 0, that are the chosen rows (mask) or went into them."""
+        if self.went_to is None:
+            return np.flatnonzero(chosen)
+        return np.flatnonzero((self.went_to >= 0) & chosen[self.went_to])
 
 
 @dataclass(frozen=True)
@@ -74,6 +89,16 @@ class EndPoints:
     angle_plus_arcsec: np.ndarray
     angle_minus_arcsec: np.ndarray
     read_as: ReadAs = AS_OURS
+
+    def rows(self, chosen: np.ndarray) -> EndPoints:
+        """The chosen rows (indices)."""
+        return replace(
+            self,
+            unit=tuple(self.unit[i] for i in chosen),
+            torque_Nm=self.torque_Nm[chosen],
+            angle_plus_arcsec=self.angle_plus_arcsec[chosen],
+            angle_minus_arcsec=self.angle_minus_arcsec[chosen],
+        )
 
 
 @dataclass(frozen=True)
@@ -138,10 +163,22 @@ def _sweep(as_read: MeasuredTable) -> Sweep:
     _refuse_empty(table, "angle_arcsec", SMALLEST_ANGLE_arcsec)
     found = history_of(table)
     _refuse_full_turns(table, found.history.unit)
+    history, went_to = found.history, _went_to(as_read, table)
+    if went_to is not None and history.time_s is None:  # rows are counted as the file has them
+        history = replace(history, number=np.flatnonzero(went_to >= 0).astype(float))
     return Sweep(
-        table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
+        table.path, history, table.numbers["angle_arcsec"], found.units, found.cycles,
         table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
+        went_to=went_to,
     )  # fmt: skip
+
+
+def _went_to(as_read: MeasuredTable, left: MeasuredTable) -> np.ndarray | None:
+    """The row that is `left` of each row read, −1 of none; None where all are left. A line is a row."""
+    if len(left) == len(as_read):
+        return None
+    stays = np.isin(as_read.line, left.line)
+    return np.where(stays, np.cumsum(stays) - 1, -1)
 
 
 def _refuse_empty(table: MeasuredTable, name: str, least: float) -> None:

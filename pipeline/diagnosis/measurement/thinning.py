@@ -35,7 +35,7 @@ def thinned(sweep: Sweep) -> Sweep:
     if n <= MOST_FIT_ROWS:
         return sweep
     h = sweep.history
-    keys = h.unit * (int(h.cycle.max()) + 1) + h.cycle
+    keys = h.unit_and_cycle
     labels, counts = np.unique(keys, return_counts=True)
     block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
@@ -150,9 +150,19 @@ def _averaged(
         torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), maybe(h.temperature_C),
         None if h.input_angle_deg is None else h.input_angle_deg[first], np.array(sizes),
-        number=mean(np.arange(len(sweep), dtype=float)) if h.time_s is None else None,
+        number=mean(h.time_or_rows(np.arange(len(sweep)))) if h.time_s is None else None,
     )  # fmt: skip
     return replace(
         sweep, history=history, angle_arcsec=angle, line=sweep.line[first],
-        averaging=Averaging(len(sweep), len(rows), within),
+        averaging=Averaging(len(sweep), len(rows), within), went_to=_went_to(sweep, groups),
     )  # fmt: skip
+
+
+def _went_to(sweep: Sweep, groups: list[np.ndarray]) -> np.ndarray:
+    """Of each data row of the file, the group that it is in, −1 of none."""
+    group = np.full(len(sweep), -1)
+    for i, rows in enumerate(groups):
+        group[rows] = i
+    if sweep.went_to is None:
+        return group
+    return np.where(sweep.went_to >= 0, group[sweep.went_to], -1)

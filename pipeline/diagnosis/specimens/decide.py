@@ -2,8 +2,8 @@
 
 Rules, with their numbers:
 - The null is the simulation with its modulus calibrated by the design's prior and at most one dimension
-  within ISO 2768-m. Nothing NAMING_NATS better than it: `consistent`.
-- A second term must be NAMING_NATS better than the explanation without it.
+  within ISO 2768-m. Nothing OVER_NULL_NATS better than it: `consistent`.
+- A second term must be OVER_NULL_NATS better than the explanation without it.
 - Rivals (`../decision.py`): another cause in a cause's place, within 4 nats of evidence or 6 of penalised
   likelihood: `ambiguous`.
 - A size less than two of its deviations from none is only a suspicion (`../decision.py`): `ambiguous`.
@@ -36,8 +36,9 @@ from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
-NAMING_NATS = 2.0
-"""Odds of seven to one."""
+OVER_NULL_NATS = 2.0
+"""Over the null, or over the explanation without a second term: odds of seven to one. Of made-up specimens no
+name was false in 480 clean sets, nor in 120 with a dimension within its tolerance."""
 UNITS: Mapping[str, str] = {YOUNGS_MODULUS: "%", SERIES: "%", LOAD_ZONE: "1"}
 
 
@@ -53,7 +54,7 @@ class SpecimenExplanation:
 def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
     """The verdict; `torque_Nm` turns compliance into the angle that a cause is worth."""
     best = next((f for f in race.fits if f.named or f.unnamed), None)
-    if best is None or best.score - race.null < NAMING_NATS:
+    if best is None or best.score - race.null < OVER_NULL_NATS:
         within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
         return SpecimenExplanation(CONSISTENT, within[0] if within else race.null_fit)
     best = _reduced(race, best)
@@ -80,12 +81,12 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
 
 
 def _reduced(race: SpecimenRace, best: LaplaceFit) -> LaplaceFit:
-    """Without terms that are not worth NAMING_NATS."""
+    """Without terms that are not worth OVER_NULL_NATS."""
     if len(best.terms) < 2:
         return best
     for f in race.fits:
         part = len(f.terms) == 1 and f.terms[0] in best.terms and (f.named or f.unnamed)
-        if part and best.score - f.score < NAMING_NATS and f.score - race.null > NAMING_NATS:
+        if part and best.score - f.score < OVER_NULL_NATS and f.score - race.null > OVER_NULL_NATS:
             return f
     return best
 
@@ -118,7 +119,9 @@ def _named(
 
 def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, float]:
     """The magnitude (docs/contract.md) and its deviation, doubt between alike explanations included."""
-    alike = [f for f in race.fits if f.named == best.named and best.score - f.score < NAMING_NATS]
+    alike = [
+        f for f in race.fits if f.named == best.named and best.score - f.score < OVER_NULL_NATS
+    ]
     each = [_value(race, f, cause) for f in alike]
     weight = np.exp([f.score - best.score for f in alike])
     weight /= weight.sum()

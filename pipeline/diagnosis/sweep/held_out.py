@@ -21,7 +21,12 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, with_tuned_
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
-from flexspline.pipeline.diagnosis.sweep.splits import Split, between_others, whole_levels
+from flexspline.pipeline.diagnosis.sweep.splits import (
+    Split,
+    affordable,
+    between_others,
+    whole_levels,
+)
 from flexspline.pipeline.second_process import results_of
 
 MOST_HELD_OUT_ROWS = 24_000
@@ -30,7 +35,8 @@ FEWEST_RMS_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 
 SAME_PLACE_DEG = 5.0
-"""Positions of the wave generator that are nearer are one: the fourth harmonic turns by 0.35 rad there."""
+"""A position of the wave generator that lies nearer to one fitted is no other: the fourth harmonic turns by
+0.35 rad there."""
 FEWEST_LEVELS = 2
 """Of a channel, that refute: others may be none of their own, or not be held out for their rows' number."""
 REFUTED_RATIO = 2.0
@@ -48,13 +54,13 @@ def gains_of(
     causes are named, on each whole amplitude, rate and temperature, learnt on the others."""
     prepared = explained.prepared
     history = prepared.rig.history
-    between = between_others(history, prepared.sweep.cycles, ~settling(history))
+    sweep = prepared.sweep
+    between = between_others(history, sweep.own_cycle, sweep.units, ~settling(history))
     levels: list[Split] = []
     if causes:
-        timed = prepared.sweep.history.time_s is not None
-        levels = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
-        most = MOST_HELD_OUT_ROWS // len(prepared.kept)
-        levels = levels[-most:] if most else []
+        timed = sweep.history.time_s is not None
+        every = whole_levels(true_history(sweep, prepared.offset_Nm), timed)
+        levels = affordable(every, MOST_HELD_OUT_ROWS // len(sweep))
     splits = [*levels, *([between] if between else [])]
     gains = results_of([partial(_gain, explained, causes, split) for split in splits])
     first = gains.pop() if between else None
@@ -134,7 +140,7 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
         rmse_calibrated=rms(left["calibrated"]),
         rmse_after=rms(left["after"]),
         noise_floor=rms(floor),
-        held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
+        held_out_rows=tuple(map(int, sweep.file_rows(test))),
         left=left,
         stated_std=rms(fit.stated_std()[test]),
         elsewhere=_elsewhere(history, train, test)
@@ -146,8 +152,12 @@ def _elsewhere(history: History, train: np.ndarray, test: np.ndarray) -> bool:
     """Whether most rows of a test are at positions that no training row is near."""
     if history.input_angle_deg is None:
         return False
-    place = np.round(history.input_angle_deg / SAME_PLACE_DEG) % round(360 / SAME_PLACE_DEG)
-    return bool((~np.isin(place[test], place[train])).mean() > 1 / 2)
+    place = history.input_angle_deg % 360.0
+    known = np.unique(place[train])
+    around = np.concatenate([known[-1:] - 360.0, known, known[:1] + 360.0])
+    after = np.searchsorted(around, place[test])
+    off = np.minimum(around[after] - place[test], place[test] - around[after - 1])
+    return bool((off >= SAME_PLACE_DEG).mean() > 1 / 2)
 
 
 def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:

@@ -16,9 +16,9 @@ from flexspline.pipeline.diagnosis.sweep.rivals import rivals_of
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
 from flexspline.pipeline.diagnosis.sweep.size_doubt import SizeDoubt
 
-NAMING_NATS, SECOND_NATS = 4.5, 7.0
-"""A cause must raise the score by this over the best set without it: beside others by more, as their misfit
-may feed it, unless they have but one shape."""
+ALONE_NATS, SECOND_NATS = 4.5, 7.0
+"""A cause must raise the score by this over the best set without it, odds of 90 and of 1100 to 1: beside
+others by more, as their misfit may feed it, unless they have but one shape."""
 STATED_NATS = 1.0
 """The same of a compliance or a gap alone, or of more rms than all causes of several shapes have together,
 whose misfit it is not: the evidence is then that of its stated uncertainty, and neither has a shape to miss.
@@ -130,7 +130,7 @@ def _worth(
         elif beside or inexact - {cause}:
             needed = SECOND_NATS
         else:
-            needed = NAMING_NATS
+            needed = ALONE_NATS
         return best.score - without.score < needed
 
     for cause in present:

@@ -11,7 +11,12 @@ from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
-from flexspline.pipeline.diagnosis.decision import EVEN_ODDS, probability, probability_of_gain
+from flexspline.pipeline.diagnosis.decision import (
+    EVEN_ODDS,
+    beside_unweighed,
+    probability,
+    probability_of_gain,
+)
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.dashpot import dashpot_explains
 from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
@@ -42,7 +47,8 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     ahead = explained.ahead
     found = []
     for c in identified.named:
-        rivals = (*identified.rivals[c], *_other_rivals(explained, c, told, timed))
+        unweighed = tuple(_other_rivals(explained, c, told, timed))
+        rivals = (*identified.rivals[c], *unweighed)
         chance = probability(c, sets)
         # where likelier explanations do without it, its gain over others says nothing
         nats = identified.evidence_nats.get(c, 0.0) if chance >= EVEN_ODDS else 0.0
@@ -50,8 +56,9 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
         found.append(NamedCause(
-            c, chance, tuple(dict.fromkeys(rivals)), magnitude[c], std[c], known_causes()[c].unit, nats,
-            identified.rms[c], _own_units(explained, c), _ahead_Nm(explained, c),
+            c, beside_unweighed(chance, unweighed), tuple(dict.fromkeys(rivals)),
+            magnitude[c], std[c], known_causes()[c].unit, nats, identified.rms[c],
+            _own_units(explained, c), _ahead_Nm(explained, c),
             identified.fit.widest_loop_arcsec() if c == FRICTION else None,
             c == DRIFT and may_follow_temperature(identified),
         ))  # fmt: skip

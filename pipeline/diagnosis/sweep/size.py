@@ -110,10 +110,8 @@ def sweep_size(
 
 
 def simulated_twist_arcsec(torque_Nm: np.ndarray, prediction: Prediction) -> float:
-    """From the lowest to the highest torque, with the gap where they differ in sign."""
-    lowest, highest = float(torque_Nm.min()), float(torque_Nm.max())
-    gap = prediction.gap_arcsec if lowest < 0 < highest else 0.0
-    return (highest - lowest) * prediction.compliance + gap
+    """From the lowest to the highest torque."""
+    return prediction.twist_arcsec(float(torque_Nm.min()), float(torque_Nm.max()))
 
 
 def _line(

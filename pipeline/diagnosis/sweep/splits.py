@@ -49,35 +49,65 @@ class Split:
 
 
 def between_others(
-    history: History, names: tuple[tuple[float, ...], ...], judged: np.ndarray
+    history: History, own_cycle: np.ndarray, units: tuple[str, ...], judged: np.ndarray
 ) -> Split | None:
     """Whole cycles, or positions, or units.
 
     Every third cycle, never the first: the last is kept for fitting where there are more than two, so
-    that what changes from cycle to cycle is not extrapolated. None where nothing can be spared. `names` are
-    the file's own numbers of each unit's cycles; `judged` (n,) the rows on which a prediction may be: where
-    amplitudes rise, whole cycles come before the first turn from the largest.
+    that what changes from cycle to cycle is not extrapolated. None where nothing can be spared.
+    `own_cycle` (n,) and `units` are the file's own cycle numbers and names; `judged` (n,) the rows on which a
+    prediction may be: where amplitudes rise, whole cycles come before the first turn from the largest.
     """
     present = np.unique(history.cycle)
     count = len(present)
     if count >= 2:
         inner = [c for c in range(1, count - 1) if judged[history.cycle == present[c]].any()]
-        places = inner[::EVERY] or [1]
-        chosen = present[places]
-        own = names[0] if len(names[0]) == count else tuple(present + 1.0)
-        left = LeftOut("cycle", tuple(float(own[c]) for c in places))
-        return Split(left, np.isin(history.cycle, chosen))
+        rows = np.isin(history.cycle, present[inner[::EVERY] or [1]])
+        return Split(_cycles(history, own_cycle, units, rows), rows)
     position = history.input_angle_deg
     if position is not None and len(spots := np.unique(position)) >= FEWEST_PLACES:
         chosen_places = spots[1::EVERY]
         left = LeftOut("input_angle_deg", tuple(map(float, chosen_places)))
         return Split(left, np.isin(position, chosen_places))
-    units = history.unit_slices
-    if len(units) >= FEWEST_UNITS:
+    slices = history.unit_slices
+    if len(slices) >= FEWEST_UNITS:
         rows = np.zeros(len(history), bool)
-        rows[units[1]] = True
-        return Split(LeftOut("unit", (2.0,)), rows)
+        rows[slices[1]] = True
+        return Split(LeftOut("unit", names=(units[history.unit[slices[1][0]]],)), rows)
     return None
+
+
+def _cycles(
+    history: History, own_cycle: np.ndarray, units: tuple[str, ...], rows: np.ndarray
+) -> LeftOut:
+    """The cycles of the rows (n,) by the file's own numbers, of each unit where units begin at others."""
+    if len(np.unique(own_cycle - history.cycle)) == 1:
+        return LeftOut("cycle", tuple(map(float, np.unique(own_cycle[rows]))))
+    of_units = (
+        (units[u], tuple(map(float, np.unique(own_cycle[rows & (history.unit == u)]))))
+        for u in np.unique(history.unit[rows])
+    )
+    return LeftOut("cycle", of_units=tuple(of_units))
+
+
+def affordable(levels: list[Split], most: int) -> list[Split]:
+    """So many of the levels at most: of each channel the two ends, the last channel before the others.
+
+    Then what lies between the ends, where there is room. Of a channel whose ends have none nothing is taken,
+    and one of a single level comes last: what is judged alone says nothing of a cause (`held_out.refuted`).
+    """
+    of_channel: dict[str, list[int]] = {}
+    for i, split in enumerate(levels):
+        of_channel.setdefault(split.what.channel, []).append(i)
+    chosen: list[int] = []
+    between: list[int] = []
+    for c in sorted(reversed(of_channel.values()), key=lambda c: len(c) == 1):
+        ends = sorted({c[0], c[-1]})
+        if len(chosen) + len(ends) <= most:
+            chosen += ends
+            between += c[1:-1]
+    chosen += between[: most - len(chosen)]
+    return [levels[i] for i in sorted(chosen)]
 
 
 def whole_levels(history: History, timed: bool) -> list[Split]:

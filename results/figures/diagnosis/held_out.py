@@ -26,6 +26,9 @@ BARS = (
     ("after", "with the causes found", PALETTE[0]),
 )
 
+TITLE_LETTERS = 46
+"""Of what was held out; with the words about it they fill the width. The report says all of it."""
+
 
 def write_held_out(path: Path, gain: Gain) -> None:
     """Residuals row by row at the left, their rms at the right."""
@@ -51,7 +54,8 @@ def write_held_out(path: Path, gain: Gain) -> None:
         names = ("as it\nstands", "cali-\nbrated", "with\ncauses")
         before_and_after(bars, gain, names, noise_words(gain))
         bars.set_xlim(-0.5, 2.6)
-        titled(figure, 0.945, f"Error on {left_out_words(gain.held_out)}, not used for fitting")
+        what = wrapped(left_out_words(gain.held_out), TITLE_LETTERS, lines=1)
+        titled(figure, 0.945, f"Error on {what}, not used for fitting")
         figure.legend(
             *rows.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,
             fontsize=9, markerscale=2.0, handletextpad=0.1, columnspacing=1.2,

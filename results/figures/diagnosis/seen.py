@@ -10,7 +10,6 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
@@ -114,7 +113,7 @@ class SweepPictureData:
         if sweep.history.time_s is not None and h.time_s is not None:
             found.append(_time(h.time_s))
         if h.cycle.max() > 0:
-            found.append(Channel("cycle", CHANNELS["cycle"].label, _own_numbers(sweep)))
+            found.append(Channel("cycle", CHANNELS["cycle"].label, sweep.own_cycle))
         if h.temperature_C is not None:
             found.append(Channel("temperature_C", CHANNELS["temperature_C"].label, h.temperature_C))
         if h.input_angle_deg is not None:
@@ -160,10 +159,3 @@ def _time(seconds: np.ndarray) -> Channel:
         if longest > 3 * size:
             return Channel("time_s", f"time in {unit}", passed / size)
     return Channel("time_s", CHANNELS["time_s"].label, passed)
-
-
-def _own_numbers(sweep: Sweep) -> np.ndarray:
-    """(n,) cycle as the file numbers it."""
-    history = sweep.history
-    first = np.array([c[0] for c in sweep.cycles])
-    return history.cycle + first[history.unit]

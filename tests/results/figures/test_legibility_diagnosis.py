@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
-from legibility import drawn_figures, faults
+from legibility import assert_legible, drawn_figures, faults
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.left_out import LeftOut
+from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.data_used import data_record
+from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.seen import seen
 
@@ -148,6 +151,16 @@ def test_the_legend_counts_each_kind_of_row_that_was_not_used(tmp_path: Path) ->
         f"not used: gap crossed ({left['backlash_crossing']}), at reversals ({left['torque_reversal']}), "
         f"before the first reversal ({left['before_first_reversal']})"
     )
+
+
+def test_a_title_names_cycles_of_many_units_as_far_as_there_is_room(tmp_path: Path) -> None:
+    """Each unit has its own numbers, which would fill three titles."""
+    own = tuple((f"gear-{u}", (100.0 * u + 2, 100.0 * u + 5)) for u in range(1, 8))
+    left = {name: np.array([3.0, -3.0, 2.0]) for name in ("before", "calibrated", "after")}
+    gain = Gain(LeftOut("cycle", of_units=own), 3.0, 2.0, 1.0, 0.5, left=left)
+    with drawn_figures() as figures:
+        write_held_out(tmp_path / "held_out.png", gain)
+    assert_legible(figures)
 
 
 def legend_texts(figure: Figure) -> list[str]:

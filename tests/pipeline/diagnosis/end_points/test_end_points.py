@@ -82,14 +82,14 @@ def test_article_also_with_stiffness_of_the_example_by_fe() -> None:
 
 def test_no_clearance_of_the_source_explains_unit_3() -> None:
     """j_bn0 = 4 µm gives 43.9″ and play at most 61.48″ (article, tables 3 and 4): 116.8″ < 117″."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     assert of.limit_arcsec() == pytest.approx(SERIES_ARCSEC + 43.90 + 61.48, abs=0.02)
     assert of.limit_arcsec() < 117
 
 
 def test_exact_tail_is_below_the_normal_one() -> None:
     """Play saturates, so large totals are rarer than a normal distribution of the same width says."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     rng = np.random.default_rng(1)
     drawn = rng.choice(of.play_arcsec, 400_000, p=of.play_weight)
     drawn = drawn + of.total_arcsec + of.straight_std_arcsec * rng.standard_normal(400_000)
@@ -100,7 +100,7 @@ def test_exact_tail_is_below_the_normal_one() -> None:
 
 def test_explanation_is_where_it_says() -> None:
     """At the play it names, the flank clearance it names gives the measured total."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     e = of.explanation(117.0)
     gear = DESIGN.gear.model_copy(update={"flank_clearance_um": e.flank_clearance_um})
     bearing = DESIGN.bearing.model_copy(update={"radial_clearance_um": e.radial_clearance_um})
@@ -234,6 +234,19 @@ def test_many_units_are_quick_and_one_row_is_enough() -> None:
     assert diagnose_end_points(DESIGN, many, PREDICTION)[0].verdict in ("consistent", "ambiguous")
     one = units([0.5], 1, np.random.default_rng(9))
     assert diagnose_end_points(DESIGN, one, PREDICTION)[0].verdict == "consistent"
+
+
+def test_rows_judged_are_those_of_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a file with more rows than a race takes, as here of 24: those that were taken."""
+    monkeypatch.setattr("flexspline.pipeline.diagnosis.end_points.diagnose.MOST_RACE_ROWS", 8)
+    made = units([1.0, 6.0], 12, np.random.default_rng(6), asymmetry=0.2)
+    gain = diagnose_end_points(DESIGN, made, PREDICTION)[0].gain
+    assert gain is not None
+    rows = np.array(gain.held_out_rows)
+    assert 8 <= len(rows) < 24
+    total = (made.angle_plus_arcsec - made.angle_minus_arcsec)[rows]
+    off = total - 2 * made.torque_Nm[rows] * PREDICTION.compliance - PREDICTION.gap_arcsec
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(gain.rmse_before)
 
 
 def test_small_displacement_model_has_no_end() -> None:

@@ -216,6 +216,20 @@ def test_the_verdict_is_that_of_the_record_without_them(tmp_path: Path) -> None:
     )
 
 
+def test_without_time_rows_are_counted_as_the_file_has_them(tmp_path: Path) -> None:
+    """As `predict` counts them: rows that are left out of the fit go on counting."""
+    columns = record()
+    del columns["time_s"]
+    columns["torque_Nm"][RUN] = 999.0
+    sweep = read(columns, tmp_path)
+    assert len(sweep) == ROWS - len(RUN)
+    number = sweep.history.timed().time_s
+    assert number is not None
+    left = np.delete(np.arange(ROWS), RUN)
+    assert number.tolist() == left.tolist()
+    assert sweep.file_rows(number >= 299).tolist() == left[left >= 299].tolist()
+
+
 def test_the_file_s_own_words_and_unit_are_told(tmp_path: Path) -> None:
     columns = record()
     columns["torque_Nm"] = columns["torque_Nm"] * 1000

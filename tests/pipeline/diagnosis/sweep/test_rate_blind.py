@@ -13,6 +13,7 @@ from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.decision import EVEN_ODDS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
@@ -168,6 +169,25 @@ def test_on_straight_ramps_at_one_rate_a_rate_dependence_is_never_without_fricti
 
 def test_on_straight_ramps_at_one_rate_a_lag_is_not_told_from_friction() -> None:
     assert found_in(lagging(RAMPS), RAMPS)["rate_dependence"] == ("friction_hysteresis",)
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_a_rival_that_the_programme_leaves_open_has_even_odds(timed: bool) -> None:
+    """On straight ramps at one rate, or without time: no explanation of the race stands for it."""
+    history = RAMPS if timed else replace(SINE, time_s=None)
+    added = lagging(RAMPS) if timed else rubbing(SINE)
+    angle = PREDICTION.angle_arcsec(history) + added
+    angle += np.random.default_rng(11).normal(0, NOISE, len(angle))
+    outcome = diagnose_sweep(as_read(history, angle), PREDICTION)[0]
+    assert outcome.verdict == "ambiguous"
+    (cause,) = outcome.causes
+    assert {cause.id, *cause.alternatives} == {"rate_dependence", "friction_hysteresis"}
+    assert cause.probability == EVEN_ODDS
+    # nor is an effect that has no such rival less likely
+    told = PREDICTION.angle_arcsec(SINE) + rubbing(SINE)
+    told += np.random.default_rng(11).normal(0, NOISE, len(told))
+    (sure,) = diagnose_sweep(as_read(SINE, told), PREDICTION)[0].causes
+    assert sure.probability > 0.99
 
 
 def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:

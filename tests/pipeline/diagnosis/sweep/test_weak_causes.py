@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import (
-    NAMING_NATS,
+    ALONE_NATS,
     STAND_IN_NATS,
     Identification,
     identify,
@@ -49,7 +49,7 @@ def test_a_cause_is_named_where_it_beats_all_without_it_and_its_rivals(growth: f
     bare = Search(evidence, lambda t: t.owner not in GROWTH).run()
     unnamed = any(evidence.terms[i].cause is None for i in bare.terms)
     # a spring has one shape: it leaves nothing that a growing gap could be
-    needed = STAND_IN_NATS if unnamed else NAMING_NATS
+    needed = STAND_IN_NATS if unnamed else ALONE_NATS
     worth = max(c.score for c in found.search.best.values()) - bare.score
     assert bool(GROWTH & set(found.named)) == (worth >= needed)
 
