@@ -26,7 +26,14 @@ from flexspline.geometry.whole_gear import require_whole_gear
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
-from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, of_torques, warnings
+from flexspline.pipeline.gear_notes import (
+    both_press_N,
+    notes,
+    of_chords,
+    of_play,
+    of_torques,
+    warnings,
+)
 from flexspline.pipeline.gear_remarks import GearNote, GearWarning
 from flexspline.pipeline.gear_terms import FREE_ANGLE_TERMS, gear_terms, play_effect, small_torque
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
@@ -160,6 +167,7 @@ def curve_of(design: Design, chain: Chain, start: Equilibrium | None = None) -> 
     angles = np.array([chain.angle(s) for s in states])
     marks = [LOADING.index(share) for share in (LOADING[0], T1_SHARE, T2_SHARE, 1.0)]
     K1, K2, K3 = chords(up[marks], angles[marks])
+    preload_N = both_press_N(chain.model, states[0])
     one_way = float(angles[LOADING.index(LOST_MOTION_SHARE)])
     full = states[-1]
     model = chain.model
@@ -179,8 +187,8 @@ def curve_of(design: Design, chain: Chain, start: Equilibrium | None = None) -> 
         angle_arcsec=_loop(angles * ARCSEC_PER_RAD),
         assumed=(*gear_assumptions(design), *LAWS),
         warnings=tuple(warnings(design, model, states[0])),
-        notes=tuple(notes(design, model, teeth)),
-        preload_tooth_force_N=both_press_N(model, states[0]),
+        notes=(*notes(design, model, teeth), *of_chords((K1, K2, K3), preload_N)),
+        preload_tooth_force_N=preload_N,
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
         tooth_force_N=tuple(teeth.tolist()),
         ball_angle_deg=tuple(np.degrees(model.wave_generator.angles).tolist()),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from math import degrees
 
 import numpy as np
@@ -17,6 +18,7 @@ from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import even
 from flexspline.pipeline.gear_remarks import (
     CuttingFlanks,
+    FallingStiffness,
     GearNote,
     GearWarning,
     HalvedBalls,
@@ -53,6 +55,8 @@ LEAST_ANGLE = 0.1
 """arcsec: what is less is rounding of the equilibrium."""
 SAME_TORQUE = 0.01
 """A difference of less is rounding of a design file: `init` writes three digits."""
+FALLS = 0.02
+"""Stations along a tooth move K1 by 2 % (`gear_model`): a smaller fall is not known."""
 ACT_TOGETHER = 0.2
 """Of the play's own effect: a smaller difference of the two orders is not worth a note."""
 
@@ -133,6 +137,16 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]
     if max(size[0], size[-1]) > AT_THE_END * size.max():
         found.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
     return found
+
+
+def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
+    """A note for K2 below K1 and for K3 below K2 [N·m/rad]: a catalogue's gear grows stiffer."""
+    names = [f"K{place}" for place in range(1, len(chords) + 1)]
+    return [
+        FallingStiffness(lower, higher, 1 - K / before, preload_N)
+        for (higher, before), (lower, K) in pairwise(zip(names, chords, strict=True))
+        if (1 - FALLS) * before > K
+    ]
 
 
 def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:

@@ -137,6 +137,16 @@ class JointClearances:
 
 
 @dataclass(frozen=True)
+class FallingStiffness:
+    """A chord's stiffness is by such a share below the one before it; the force without torque, or 0."""
+
+    lower: str
+    higher: str
+    share: float
+    preload_N: float
+
+
+@dataclass(frozen=True)
 class BucklingTube:
     """Torque and shear stress at which it buckles."""
 
@@ -153,6 +163,7 @@ GearNote = (
     | LoadedLastPair
     | TwoTorques
     | JointClearances
+    | FallingStiffness
     | BucklingTube
     | Literal["play_beside_stroke", "no_ratcheting", "ratcheting_is_upper"]
 )

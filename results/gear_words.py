@@ -9,6 +9,7 @@ from flexspline.pipeline.gear_remarks import (
     BucklingTube,
     CuttingFlanks,
     EarlyEnd,
+    FallingStiffness,
     GearNote,
     GearWarning,
     HalvedBalls,
@@ -139,6 +140,14 @@ def _note(note: GearNote) -> str:
                 f"{_rounded(alone)} arcsec smaller; the terms remove the flank clearance first, which leaves "
                 f"{_rounded(term)} arcsec to the play"
             )
+        case FallingStiffness(lower, higher, share, preload):
+            said = (
+                f"{lower} is {100 * share:.2g} % below {higher}: the gear is softer at larger torque, "
+                "where catalogues' gears are stiffer"
+            )
+            if not preload:
+                return said
+            return f"{said}. Here both flanks press without torque, and together they are stiffer than one"
         case BucklingTube(torque, stress):
             return (
                 f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "

@@ -107,6 +107,18 @@ def test_teeth_that_press_without_torque_are_said_with_the_reason() -> None:
     assert "the plug's stroke of 0.13 mm is not m(z2 - z1)/2 = 0.2 mm" in line
 
 
+def test_a_gear_that_is_softer_at_larger_torque_says_so(curve: GearCurve) -> None:
+    """Teeth that press on both flanks are two springs side by side until one flank is free."""
+    tight = {"wave_generator.deflection_mm": 0.215, "bearing.radial_clearance_um": 0.0}
+    pressed = alone(DESIGN.changed(tight))
+    assert pressed.K2_Nm_per_rad < 0.98 * pressed.K1_Nm_per_rad
+    (line,) = (line for line in gear_notes(pressed) if "softer at larger torque" in line)
+    fall_pct = 100 * (1 - pressed.K2_Nm_per_rad / pressed.K1_Nm_per_rad)
+    assert line.startswith(f"K2 is {fall_pct:.2g} % below K1")
+    assert "both flanks press without torque" in line
+    assert not any("softer" in line for line in gear_notes(curve))
+
+
 def test_the_gear_as_drawn_is_free_without_torque(curve: GearCurve) -> None:
     assert curve.preload_tooth_force_N == 0
     assert curve.warnings == ()
