@@ -9,9 +9,9 @@ from typing import Any
 from flexspline.pipeline.backlash import STD_KEY
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.numbers import grouped
-from flexspline.results.peaks import marked
+from flexspline.results.peaks import BORDER, MEANING, marked
 from flexspline.results.quantities import QUANTITIES
-from flexspline.results.terminal import row
+from flexspline.results.terminal import prose, row
 
 NAMES = 64
 """Width of the column of names."""
@@ -24,6 +24,7 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
     `notes` stand beside figures, by key.
     """
     lines = [f"{record['design']}"]
+    at_border = False
     gear = record.get("gear", {})  # a run's; `flexspline gear` has its figures beside the others
     for entry in QUANTITIES:
         value: Any = {**gear, **record}
@@ -39,9 +40,13 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
             kind = record.get(entry.key.replace("_bounds_Nm_per_rad", "_bounds_kind"), "")
             shown = f"{entry.range_text(*value)} {entry.unit}" + (f", {kind}" if kind else "")
         else:
-            mark = marked(record, entry.key) or notes.get(entry.key)
+            border = marked(record, entry.key)
+            at_border |= bool(border)
+            mark = border or notes.get(entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines += row((entry.name, shown), (NAMES,))
+    if at_border:
+        lines += prose(f"“{BORDER}”: {MEANING}")
     if terms := record.get("terms_arcsec"):
         from flexspline.results.gear_terms import term_names
 

@@ -60,7 +60,8 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
         tell(f"flexspline: {error}")
         raise typer.Exit(REFUSED) from None
     except DesignError as error:
-        tell(f"flexspline: {where}{error}")
+        of_an_option = error.key.startswith("--")  # which is no fault of the file
+        tell(f"flexspline: {'' if of_an_option else where}{error}")
         raise typer.Exit(REFUSED) from None
     except KeyboardInterrupt:
         tell(f"flexspline: interrupted{interrupted}")

@@ -26,6 +26,8 @@ from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
 from flexspline.results.numbers import grouped
 
+FINEST_ENCODER = 1e-5
+"""Step over the twist's span: finer ones, 29 bits a turn at 200 arcsec, are a file's last digits."""
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
@@ -146,10 +148,11 @@ def _encoder_notes(prepared: PreparedSweep) -> list[str]:
     """That the encoder is coarse, where its rounding is more than the readings' noise."""
     angle, white = prepared.sweep.angle_arcsec, prepared.noise.white
     rounding = rounding_arcsec(angle, white)
-    if rounding**2 < white / 2:
+    step = encoder_step(angle)
+    if rounding**2 < white / 2 or step < FINEST_ENCODER * (angle.max() - angle.min()):
         return []
     return [
-        f"the angle is read in steps of {encoder_step(angle):.3g} arcsec: what rounding leaves, "
+        f"the angle is read in steps of {step:.3g} arcsec: what rounding leaves, "
         f"{rounding:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or a finer "
         "encoder, would show less of it"
     ]

@@ -151,8 +151,8 @@ def test_backlash_with_given_stiffness_needs_no_fea(
     ("words", "needle"),
     [
         (["run", "no-such-file.toml"], "no-such-file.toml"),
-        (["backlash", CUP, "--Kb", "-1"], "--Kb"),
-        (["backlash", CUP, "--Kb", "nan"], "--Kb"),
+        (["backlash", CUP, "--Kb", "-1"], "flexspline: --Kb = -1.0: must"),
+        (["backlash", CUP, "--Kb", "nan"], "flexspline: --Kb = nan: must"),
         (["init", "bowl"], "bowl"),
         (["stiffness", CUP, "--out", ""], "names no folder"),
         (["export", CUP, "--format", "dxf"], "msh, med, bdf, inp, vtu, xdmf"),

@@ -56,6 +56,19 @@ def stress_rows(mises_MPa: float, border: bool, limit_MPa: float | None = 500.0)
     return [row for row in answers(said) if row["unit"] == "MPa"]
 
 
+def test_the_terminal_explains_the_mark_once() -> None:
+    def said(border: bool) -> str:
+        figures = {
+            key: value
+            for name in NAMES
+            for key, value in peak_record(name, peak(400.0, border)).items()
+        }
+        return " ".join(table({"design": "a cup", **figures}, Path("out")).split())
+
+    assert said(border=True).count("is no measure of the part's strength") == 1
+    assert "no measure" not in said(border=False)
+
+
 def test_the_first_table_marks_it_and_gives_no_share() -> None:
     for row in stress_rows(400.0, border=True):
         assert BORDER in row["note"]

@@ -8,6 +8,11 @@ ONE_READING_ARCSEC = 1e-4
 """Readings that differ by less are one, written after a conversion of units: steps of encoders are larger."""
 ROUNDING_RATIO = 12.0
 """A step's square over the variance of what is rounded to it."""
+OFF_A_STEP = 0.1
+"""Of a step: by chance a fifth of all differences are nearer to a whole number of steps."""
+WHOLE_STEPS = 0.8
+"""Share of neighbouring readings that many whole steps apart, above which steps are an encoder's: one may
+change its readings by hand or by an outlier."""
 
 
 def undithered(variance: float, step: float) -> float:
@@ -25,9 +30,19 @@ def undithered(variance: float, step: float) -> float:
 
 
 def encoder_step(angle_arcsec: np.ndarray) -> float:
-    """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too."""
+    """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too.
+
+    0 where most readings are no whole steps apart: a record without noise that repeats itself has few
+    readings, and no encoder made their differences.
+    """
     apart = np.diff(np.unique(np.round(angle_arcsec / ONE_READING_ARCSEC))) * ONE_READING_ARCSEC
-    return float(apart.min()) if len(apart) else 0.0
+    if not len(apart):
+        return 0.0
+    step = float(apart.min())
+    steps = apart / step
+    # a difference is known to a reading's rounding, the step in it as often as the step goes into it
+    unsure = OFF_A_STEP + ONE_READING_ARCSEC / step * (1 + steps)
+    return step if np.mean(np.abs(steps - np.round(steps)) < unsure) > WHOLE_STEPS else 0.0
 
 
 def rounding_arcsec(angle_arcsec: np.ndarray, variance: float) -> float:

@@ -28,3 +28,15 @@ def test_a_ramp_s_rounding_leaves_that_rms_at_every_pass(step: float, share: flo
 def test_readings_of_many_digits_are_not_rounded() -> None:
     angle = np.random.default_rng(1).normal(0, 50, 3000)
     assert rounding_arcsec(angle, 0.04) < 1e-3
+
+
+def test_a_motion_that_repeats_without_noise_has_no_steps() -> None:
+    """Its few readings lie as its sine puts them: the least difference between two is no encoder's."""
+    sine = 61 * np.sin(np.linspace(0, 2 * np.pi, 240, endpoint=False))
+    repeated = np.tile(sine, 3)
+    assert encoder_step(repeated) == 0
+    assert encoder_step(0.5 * np.round(repeated / 0.5)) == pytest.approx(0.5)
+    # written in another unit, to four digits
+    assert encoder_step(np.round(0.1374 * np.round(repeated / 0.1374), 4)) == pytest.approx(
+        0.1374, abs=1e-4
+    )
