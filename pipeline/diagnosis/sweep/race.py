@@ -40,8 +40,8 @@ from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
 
-TUNINGS, TUNED_KINDS = 3, 3
-"""Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
+TUNINGS, TUNED_ALONE = 3, 3
+"""Rounds of shape tuning; laws of a cause alone that are tuned."""
 
 
 TUNED_LAWS = 2
@@ -174,7 +174,7 @@ def with_tuned_shapes(
 def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     """Sets of one cause alone that explain a good part of what the best set does.
 
-    The best set of each cause, and its best few single shapes of different kinds: which kind is best
+    The best set of each cause, and its best few single shapes of different laws: which law is best
     may change once each is tuned.
     """
     evidence = search.evidence
@@ -182,17 +182,15 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     found = {
         c.terms for owners, c in search.best.items() if len(owners) == 1 and c.log_evidence > enough
     }
-    kinds: dict[str, dict[tuple[float, ...], Candidate]] = {}
+    by_law: dict[str, dict[tuple[object, ...], Candidate]] = {}
     for c in sorted(search.tried, key=lambda c: -c.log_evidence):
         if len(c.terms) != 1 or c.log_evidence < enough:
             continue
         term = evidence.terms[c.terms[0]]
-        assert term.cause is not None
-        kind = tuple(v for k, v in sorted(term.shape.items()) if k not in term.cause.tunable)
-        mine = kinds.setdefault(term.owner, {})
-        if len(mine) < TUNED_KINDS:
-            mine.setdefault(kind, c)
-    found |= {c.terms for mine in kinds.values() for c in mine.values()}
+        mine = by_law.setdefault(term.owner, {})
+        if len(mine) < TUNED_ALONE:
+            mine.setdefault(term.law, c)
+    found |= {c.terms for mine in by_law.values() for c in mine.values()}
     return sorted(found - {best.terms})
 
 
