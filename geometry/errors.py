@@ -14,6 +14,14 @@ FIXED = range(-6, 7)
 """Powers of ten that are written out; beyond, zeros have to be counted."""
 
 
+def _restored(
+    kind: type[FlexsplineError], args: tuple[object, ...], state: dict[str, object]
+) -> FlexsplineError:
+    fault = kind.__new__(kind, *args)
+    fault.__dict__.update(state)
+    return fault
+
+
 class FlexsplineError(Exception):
     """The base of every error that the program raises on purpose; its text is one line.
 
@@ -26,6 +34,10 @@ class FlexsplineError(Exception):
     ...     print(fault)
     no-such-design.toml: no such file
     """
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """As it is, whatever its own `__init__` takes: workers raise it in another process."""
+        return _restored, (type(self), self.args, self.__dict__)
 
 
 class DesignError(FlexsplineError, ValueError):

@@ -24,11 +24,11 @@ from flexspline.pipeline.ellipse_peak import (
 )
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.load_cases import rim_cases, rim_stiffness
+from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.part_stiffness import part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim_case import RimCase, figure_of
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
@@ -136,7 +136,7 @@ class _Figures:
         two cases that may have large ones, of which one waits for the other (`fea.solid.alone`).
         """
         return [
-            *(partial(self._solve_case, rim, case) for case in rim_cases(rim)),
+            *(partial(self._solve_case, rim, case) for case in RIM_CASES),
             partial(self._find, rim, "wave_generator_peak", ellipse_peak),
             partial(self._find, rim, "half_seat_peak", half_seat_peak),
         ]

@@ -8,7 +8,7 @@ same peak at the same place, and the stress about the holes is below it, the hol
 from __future__ import annotations
 
 from dataclasses import replace
-from math import dist, pi
+from math import dist, inf, pi
 
 import numpy as np
 
@@ -145,8 +145,10 @@ def _of_body(
 
 
 def _in_annulus(field: RevolvedField, part: Part, bolts: BoltCircle) -> float:
-    """The largest von Mises stress [MPa] at nodes in the annulus of the holes."""
+    """The largest von Mises stress [MPa] at nodes in the annulus of the holes; inf where none lies in it."""
     r, z = field.places.T
     inside = _in_holes_ring(r, z, part, bolts)
+    if not inside.any():
+        return inf
     angles = (0.0, pi / (2 * field.n))
-    return max(float(field.mises(phi)[inside].max(initial=0.0)) for phi in angles)
+    return max(float(field.mises(phi)[inside].max()) for phi in angles)

@@ -106,8 +106,8 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     """K of the solid model where its enclosure says more, or less, than its own estimate.
 
     Where half of the enclosure is within `tolerance`·K, or it is the narrower of the two, its ends are the
-    bounds; else each end is the better of both. K is the solid's, moved into the bounds; the middle of
-    the enclosure where that is known better.
+    bounds; else each end is the better of both. K is the solid's, or the middle of what both leave where
+    that K is outside of the enclosure; the middle of the enclosure where that is known better.
 
     Raises
     ------
@@ -116,23 +116,23 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     check_against(solid, enclosure)
     half = solid.half_width
     narrow = enclosure.half_width <= max(tolerance, half)
+    lower = max(solid.lower_Nm_per_rad, enclosure.lower_Nm_per_rad)
+    upper = min(solid.upper_Nm_per_rad, enclosure.upper_Nm_per_rad)
+    # apart by rounding, or by PARABOLA_SLACK
+    lower, upper = min(lower, upper), max(lower, upper)
+    if half > enclosure.half_width:
+        K = enclosure.K_Nm_per_rad
+        how = f"the middle of its bounds (the solid model alone: ± {percent(half)})"
+    elif enclosure.lower_Nm_per_rad <= solid.K_Nm_per_rad <= enclosure.upper_Nm_per_rad:
+        K, how = solid.K_Nm_per_rad, f"the solid model's: {solid.method}"
+    else:
+        K = min(max((lower + upper) / 2, enclosure.lower_Nm_per_rad), enclosure.upper_Nm_per_rad)
+        how = f"the middle of what its bounds and the solid model's have in common: {solid.method}"
     if narrow:
         lower, upper = enclosure.bounds_Nm_per_rad
-    else:
-        lower = max(solid.lower_Nm_per_rad, enclosure.lower_Nm_per_rad)
-        upper = min(solid.upper_Nm_per_rad, enclosure.upper_Nm_per_rad)
-        # apart by rounding, or by PARABOLA_SLACK
-        lower, upper = min(lower, upper), max(lower, upper)
-    if half <= enclosure.half_width:
-        K, how = solid, f"the solid model's, within its bounds: {solid.method}"
-    else:
-        K, how = (
-            enclosure,
-            f"the middle of its bounds (the solid model alone: ± {percent(half)})",
-        )
     return replace(
         solid,
-        K_Nm_per_rad=min(max(K.K_Nm_per_rad, lower), upper),
+        K_Nm_per_rad=K,
         lower_Nm_per_rad=lower,
         upper_Nm_per_rad=upper,
         guaranteed=narrow and enclosure.guaranteed,

@@ -20,7 +20,7 @@ from flexspline.pipeline.enclosed_part import (
     enclosure_of,
     may_answer,
 )
-from flexspline.pipeline.enclosure import answered_within
+from flexspline.pipeline.enclosure import answered_within, check_against
 from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.refining import Refining
@@ -44,25 +44,16 @@ class LoadCase:
     fast: Callable[[Part, float], Stiffness]
 
 
-def rim_cases(flexspline: PartModel) -> tuple[RimCase, ...]:
-    """The cases that are answered by the model of the part's stiffness.
-
-    "lobes_contact" (the seat may lift off) is not among them where the solid model is asked for: lift-off
-    breaks the symmetry that makes that model small.
-    """
-    if flexspline.axisymmetric or may_answer(flexspline):
-        return RIM_CASES
-    return SOLID_CASES
-
-
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     """K_b of one lobe case, by the model that the part's stiffness uses.
 
-    A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance.
+    A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
+    the solid model is asked for by name, its K is only checked against them.
 
     Raises
     ------
     DesignError
+    NestingError : the solid model's K lies outside.
     ComputationError : the solve failed; or lift-off is asked of the solid model.
     """
     asked = CASES[case]
@@ -75,7 +66,10 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
             f"{asked.title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
-    return asked.solid(flexspline)
+    solid = asked.solid(flexspline)
+    if enclosure := enclosure_if_any(flexspline, asked.revolved):
+        check_against(solid, enclosure)
+    return solid
 
 
 def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:

@@ -6,6 +6,7 @@ from math import inf
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer
@@ -14,6 +15,7 @@ from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_torsion import (
     RIM_ELEMENTS,
+    SECOND_SECONDS,
     TwistedPart,
     by_fTetWild,
     copies_in_rim,
@@ -87,16 +89,17 @@ def twisted_part(model: PartModel) -> TwistedPart:
     enclosure = torsion_enclosure(model) if may_answer(model) else None
     tolerance = model.tolerance
     one_mesh = enclosure is not None and enclosure.half_width <= tolerance
+    second_s = MESHER_SECONDS if enclosure is None else SECOND_SECONDS
 
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
             if one_mesh and enclosure is not None:
-                found = twisted(model, inf)
+                found = twisted(model, inf, second_s=second_s)
                 if overlap(found.stiffness, enclosure):
                     return found
             if may_leave_fillets_out(model):
                 return twisted_shaft(model, tolerance)
-            return twisted(model, tolerance)
+            return twisted(model, tolerance, second_s=second_s)
 
     key = {**model.torsion_key, "one_mesh": one_mesh}
     return model.context.cache.get("torsion", key, make, lambda made: is_lasting(made.stiffness))[0]

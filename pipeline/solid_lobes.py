@@ -22,10 +22,10 @@ two cases, and gave ± 0.05 % where 0.1 % was asked."""
 COARSER_MESH = -1
 """Number of the mesh of its own that is tried where the first one, 0, would have more elements."""
 WORTH_SHARE = 0.65
-"""Of the bounds that are there already: what a mesh that cannot meet the tolerance must promise. Two such
-meshes of 91 512 and 95 370 elements, 20 and 30 s of the processor, promised ± 0.23 % where ± 0.32 and 0.13 %
-were known, and gave ± 0.62 and 0.19 %; one of torsion's, 4 s, promised ± 0.17 % where ± 0.23 % was known,
-and gave ± 0.26 %."""
+"""Of the bounds that are there already: what a mesh of its own that cannot meet the tolerance must promise.
+Two of 91 512 and 95 370 elements, 20 and 30 s of the processor, promised ± 0.23 % where ± 0.32 and 0.13 %
+were known, and gave ± 0.62 and 0.19 %. Torsion's mesh is there and takes 4 s: it need only promise what
+is known. One promised ± 0.17 % where ± 0.23 % was known, and gave ± 0.26 %."""
 MESHES = 3
 """Made for the case at most."""
 USUAL_OVER_TORSION = 1.8
@@ -79,8 +79,7 @@ def lobe_meshes(
     SolidError : the next one would be too large, or fails a check; or as `solid_lobes`.
     """
     own = range(MESHES if flexspline.is_swept else 0)
-    usual = USUAL_OVER_TORSION * _half_of_torsion(flexspline)
-    begins = not own or (supported and usual <= flexspline.tolerance)
+    begins = not own or (supported and _usual_of_held(flexspline) <= flexspline.tolerance)
     if begins:
         yield _of_torsion(flexspline, supported, inf if own else known)
     for number in own:
@@ -94,20 +93,20 @@ def lobe_meshes(
         yield mesh, USUAL_EFFICIENCY
 
 
-def _half_of_torsion(flexspline: PartModel) -> float:
-    """Relative bounds ± of K in torsion on the mesh of `rim_mesh`; of its first where that is coarser."""
+def _usual_of_held(flexspline: PartModel) -> float:
+    """Relative bounds ± that a held rim usually has on the mesh of `rim_mesh`; that mesh is made for it."""
     found, elements = twisted_part(flexspline).stiffness, rim_mesh(flexspline).mesh.elements
     level = max((m for m in found.levels if m.elements <= elements), default=found.levels[0],
                 key=lambda m: m.elements)  # fmt: skip
-    return level.K_Nm_per_rad / found.K_Nm_per_rad - 1
+    return USUAL_OVER_TORSION * (level.K_Nm_per_rad / found.K_Nm_per_rad - 1)
 
 
 def _of_torsion(
     flexspline: PartModel, supported: bool, known: float, other: float = inf
 ) -> tuple[TetMesh, float]:
     """The mesh of torsion with its scale; `other`: bounds expected of one that was not worth its solve."""
-    usual = USUAL_OVER_TORSION * _half_of_torsion(flexspline) if supported else USUAL_OF_FREE
-    if usual > max(flexspline.tolerance, WORTH_SHARE * known):
+    usual = _usual_of_held(flexspline) if supported else USUAL_OF_FREE
+    if usual > max(flexspline.tolerance, known):
         raise NoBetterMeshError(min(usual, other), known)
     twisted = twisted_part(flexspline)
     scale = twisted.stiffness.error_scale if supported else COARSE_SCALE

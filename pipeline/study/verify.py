@@ -12,6 +12,7 @@ from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
+from flexspline.pipeline.enclosure import NestingError
 from flexspline.pipeline.load_cases import SOLID_CASES
 from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.stiffnesses import NotFoundError, Stiffnesses
@@ -44,7 +45,12 @@ DIED = SolidAnswer(Outcome(faults=(WORKER_DIED,)), passing=True)
 
 
 def solid_answer(task: Task, rim: bool) -> SolidAnswer:
-    """One design by the solid model; `rim`: the lobes and the ellipse too."""
+    """One design by the solid model; `rim`: the lobes and the ellipse too.
+
+    Raises
+    ------
+    NestingError : one of two models is wrong.
+    """
     try:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
@@ -54,6 +60,8 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
         return SolidAnswer(Outcome(_figures(design, found)), found.passing)
     except NotFoundError as fault:
         return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
+    except NestingError:  # an error of the program
+        raise
     except (FlexsplineError, MemoryError) as fault:
         why = without(fault)
         return SolidAnswer(Outcome(faults=(why.words,)), why.of_the_machine)

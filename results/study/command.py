@@ -37,7 +37,12 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.study.best_stress import draw_best_stress
         from flexspline.results.study.failures import nothing_built
         from flexspline.results.study.figures import write_figures
-        from flexspline.results.study.notes import border_warnings, preloaded, unsettled
+        from flexspline.results.study.notes import (
+            border_warnings,
+            preloaded,
+            unsettled,
+            wide_bounds,
+        )
         from flexspline.results.study.progress import Watch
         from flexspline.results.study.record import summary, words
         from flexspline.results.study.report import write_study_reports
@@ -65,7 +70,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
         of_best = tuple(best_warnings(result))
-        for line in (*unsettled(result), *border_warnings(result), *preloaded(result), *of_best):
+        of_all = (unsettled, wide_bounds, border_warnings, preloaded)
+        for line in (*(line for each in of_all for line in each(result)), *of_best):
             tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)

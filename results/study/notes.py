@@ -13,6 +13,7 @@ from flexspline.geometry.percent import percent
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
+from flexspline.pipeline.study.figures import stiffness_keys
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
@@ -151,10 +152,25 @@ def _holes(result: StudyResult) -> Iterable[str]:
             "K_b of every design with bolt holes lies between two parts of its own: one with the ring of the "
             "holes cut out, one without holes, whatever their number. Stresses are those without holes."
         )
+        yield from map(sentence, wide_bounds(result))
     if pierced(design):
         yield from _shaft_holes(result)
     if keys := unfollowed(result.study):
         yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
+
+
+def wide_bounds(result: StudyResult) -> Iterable[str]:
+    """A line where bolt holes leave K_b of some designs less certain than `solver.tolerance_pct` asks."""
+    key, low, high = stiffness_keys("K_b")
+    tolerance = result.study.design.solver.tolerance_pct / 100
+    figures = [r.outcome.figures for r in result.built if low in r.outcome.figures]
+    halves = [(f[high] - f[low]) / (2 * f[key]) for f in figures]
+    if count := sum(half > tolerance for half in halves):
+        yield (
+            f"in {count} of {len(halves)} designs bolt holes leave bounds of K_b wider than "
+            f"± {percent(tolerance)}, up to ± {percent(max(halves))}: K_b is their middle and may be off by "
+            "as much; run.verify solves the best designs with the solid model"
+        )
 
 
 def _shaft_holes(result: StudyResult) -> Iterable[str]:

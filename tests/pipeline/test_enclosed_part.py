@@ -10,11 +10,13 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.solid.errors import NoBetterMeshError
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
+from flexspline.pipeline import load_cases, part_stiffness, solid_lobes, solid_torsion
+from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
 from flexspline.pipeline.enclosure import NestingError, enclosed
@@ -143,6 +145,47 @@ def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypat
     monkeypatch.setattr(solid_torsion, "solid_stiffness", off)
     with pytest.raises(NestingError, match="the solid model"):
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
+
+
+@pytest.mark.parametrize("solver", ["auto", "solid"])
+def test_a_wrong_solid_model_of_the_lobes_is_found_out(
+    solver: str, tmp_path: Path, monkeypatch
+) -> None:
+    """With the solid model asked for by name too: K 30 % off is no answer."""
+    case = load_cases.CASES["lobes"]
+
+    def off(*given: object, **named: object) -> Stiffness:
+        assert case.solid is not None
+        return case.solid(*given, **named).times(1.3)
+
+    monkeypatch.setattr(
+        load_cases, "CASES", {**load_cases.CASES, "lobes": replace(case, solid=off)}
+    )
+    with pytest.raises(NestingError, match="the solid model"):
+        rim_stiffness(model(WIDE.changed({"solver.model": solver}), tmp_path), "lobes")
+
+
+def test_lift_off_that_the_solid_model_cannot_solve_is_said(tmp_path: Path) -> None:
+    asked = {"solver.model": "solid", "solver.tolerance_pct": 5.0}
+    context = AnalysisContext(CUP.changed(asked), Cache(tmp_path), Progress())
+    found = stiffnesses(context, shaft=False)
+    assert set(found.missing) == {"K_b_lobes_contact"}
+    assert "meridian only" in found.missing["K_b_lobes_contact"].words
+
+
+def test_no_mesh_is_made_for_a_free_rim_that_it_could_not_know_better(
+    tmp_path: Path, monkeypatch
+) -> None:
+    """Where fTetWild makes the meshes, that takes minutes."""
+
+    def never(*given: object) -> None:
+        raise AssertionError("a mesh was made")
+
+    monkeypatch.setattr(solid_lobes, "rim_mesh", never)
+    monkeypatch.setattr(solid_lobes, "twisted_part", never)
+    part = model(CUP.changed({"solver.mesher": "tetwild"}), tmp_path)
+    with pytest.raises(NoBetterMeshError):
+        next(solid_lobes.lobe_meshes(part, supported=False, known=0.01))
 
 
 def recorded() -> tuple[list[float], Callable[[PartModel], Stiffness]]:

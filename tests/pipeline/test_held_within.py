@@ -31,9 +31,15 @@ def test_a_narrow_enclosure_bounds_k() -> None:
     assert "theorem" in found.method
 
 
-@pytest.mark.parametrize(("K", "held"), [(1002.2, 1002.0), (997.9, 998.0)])
-def test_k_is_moved_into_the_enclosure(K: float, held: float) -> None:
-    assert held_within(solid(K, 1.0), enclosure(998.0, 1002.0), TOLERANCE).K_Nm_per_rad == held
+@pytest.mark.parametrize(("K", "held"), [(1002.2, 1001.6), (997.9, 998.45)])
+def test_k_outside_the_enclosure_is_moved_to_the_middle_of_what_both_leave(
+    K: float, held: float
+) -> None:
+    """The solid model says K ± 1: from 1001.2 on, and up to 998.9; the enclosure's own end is no answer."""
+    found = held_within(solid(K, 1.0), enclosure(998.0, 1002.0), TOLERANCE)
+    assert found.K_Nm_per_rad == pytest.approx(held)
+    assert found.bounds_Nm_per_rad == (998.0, 1002.0)
+    assert "in common" in found.method
 
 
 def test_a_coarse_solid_leaves_the_middle() -> None:

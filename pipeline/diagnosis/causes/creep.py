@@ -61,8 +61,8 @@ class Creep(Cause):
     tunable = ("shortest_s", "longest_s", "exponent")
     elastic = True
     shape_doubt = 0.05
-    """One and two deviations cover 63 and 91 % of 65 sizes by logarithms and powers of time, 92 and 96 % of 28 by
-    Kelvin elements: 72 and 93 % of both."""
+    """One and two deviations cover 72 and 93 % of 93 sizes: 63 and 91 % of 65 by logarithms and powers of
+    time, 92 and 96 % of 28 by Kelvin elements."""
     made_of = frozenset({SERIES, RATE})
     """A Kelvin element of a short retardation time τ: c·lag(T) = c·T − cτ·q, q = (T − lag(T))/τ the torque's
     rate through that lag, is a spring less what lags."""

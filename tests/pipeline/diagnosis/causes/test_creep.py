@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,9 +21,7 @@ RAMP_s, HOLD_s = 10.0, 900.0
 def held(step_s: float) -> History:
     """Three loops, then a hold at each of five levels [N·m], each reached by a ramp."""
     levels = (0.0, 2.0, -2.0, 2.0, -2.0, 2.0, -2.0, 0.0)
-    torque = [
-        np.linspace(a, b, 40, endpoint=False) for a, b in zip(levels, levels[1:], strict=False)
-    ]
+    torque = [np.linspace(a, b, 40, endpoint=False) for a, b in pairwise(levels)]
     time = [np.full(40, 2 * RAMP_s / 40)] * len(torque)
     before = 0.0
     for level in (2.0, -2.0, 1.0, -1.0, 2.0):
