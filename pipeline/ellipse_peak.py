@@ -15,6 +15,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.deadline import Deadline
+from flexspline.fea.shortfall import without
 from flexspline.fea.types import SolidField, StressPeak
 from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.errors import ComputationError
@@ -51,6 +52,9 @@ up to 16 % of what meshes of up to six times the elements had (five cups of 2 to
 def ellipse_peak(flexspline: PartModel) -> StressPeak:
     """By the model that the part's stiffness uses.
 
+    Where the solid model is needed for the stress at the holes alone, and fails, the peak is that without
+    holes, and its `shortfall` says so.
+
     Raises
     ------
     DesignError
@@ -58,15 +62,27 @@ def ellipse_peak(flexspline: PartModel) -> StressPeak:
     """
     if flexspline.axisymmetric:
         return _of_body(flexspline, flexspline.part, "wave generator")[0]
-    return _of_two_bodies(flexspline) or solid_ellipse(flexspline).peak
+    agreed = _of_two_bodies(flexspline)
+    if agreed is not None and agreed.stands_for:
+        return agreed
+    try:
+        return solid_ellipse(flexspline).peak
+    except (ComputationError, MemoryError) as fault:
+        if agreed is None:
+            raise
+        why = without(fault)
+        words = f"the stress at the bolt holes is not known: {why.words}"
+        return replace(agreed, shortfall=replace(why, words=words))
 
 
 def ellipse_field(flexspline: PartModel) -> SolidField:
     """The field for pictures and files; its peak from the model that answers. Errors as `ellipse_peak`."""
     if flexspline.axisymmetric:
         return replace(coarse_ellipse(flexspline), peak=ellipse_peak(flexspline))
-    peak = _of_two_bodies(flexspline)
-    return replace(coarse_ellipse(flexspline), peak=peak) if peak else solid_ellipse(flexspline)
+    agreed = _of_two_bodies(flexspline)
+    if agreed is not None and agreed.stands_for:
+        return replace(coarse_ellipse(flexspline), peak=agreed)
+    return solid_ellipse(flexspline)
 
 
 def half_seat_peak(flexspline: PartModel) -> StressPeak:
@@ -87,7 +103,10 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
 
 def _of_two_bodies(flexspline: PartModel) -> StressPeak | None:
-    """The whole body's peak; None where it may not answer for the part with its holes."""
+    """The whole body's peak, None where the cut one has another.
+
+    It has `stands_for` where it is the part's: where the stress at the holes is certainly below it.
+    """
     bolts = flexspline.part.bolts
     if bolts is None or not may_answer(flexspline):
         return None
@@ -105,9 +124,9 @@ def _of_two_bodies(flexspline: PartModel) -> StressPeak | None:
         try:
             at_holes = _at_holes_of(coarse_ellipse(flexspline), flexspline.part, bolts)
         except (ComputationError, MemoryError):
-            return None
+            return whole
         if COARSE * at_holes >= whole.mises_MPa:
-            return None
+            return whole
     return replace(whole, stands_for=WITHOUT_HOLES)
 
 

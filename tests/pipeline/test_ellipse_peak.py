@@ -14,6 +14,7 @@ from finished_run import FinishedRun
 
 from flexspline.fea.types import SolidField
 from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import ellipse_peak as under_test
 from flexspline.pipeline.cache import Cache
@@ -75,6 +76,24 @@ def test_stress_at_the_holes_is_looked_up_where_its_bound_is_too_high(
     monkeypatch.setattr(under_test, "coarse_ellipse", lambda asked: field)
     found = under_test.ellipse_peak(part).mises_MPa
     assert found == (whole.mises_MPa if answered else SOLID_MPa)
+
+
+def test_where_no_mesh_can_be_made_the_peak_without_holes_is_given_and_said(
+    part: PartModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*given: object) -> SolidField:
+        raise ComputationError("no mesh")
+
+    monkeypatch.setattr(under_test, "KIRSCH", 1e3)
+    for name in ("coarse_ellipse", "solid_ellipse"):
+        monkeypatch.setattr(under_test, name, fails)
+    found = under_test.ellipse_peak(part)
+    whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
+    assert found.mises_MPa == whole.mises_MPa
+    assert found.shortfall.words == "the stress at the bolt holes is not known: no mesh"
+    monkeypatch.setattr(under_test, "AGREEMENT", 0.0)
+    with pytest.raises(ComputationError, match="no mesh"):
+        under_test.ellipse_peak(part)
 
 
 def test_the_solid_model_by_name_answers_itself(part: PartModel, folder: Path) -> None:
