@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
@@ -43,7 +44,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             first = row == 0
             axes.barh(
                 row, high - low, left=low, height=0.66, color=PALETTE[0], alpha=0.15, lw=0,
-                label="95 of 100 good units" if first else None,
+                label=f"{COVERED_WORDS} good units" if first else None,
             )  # fmt: skip
             axes.plot(
                 [envelope.total_arcsec] * 2, [row - 0.33, row + 0.33], color=PALETTE[0], lw=2,
