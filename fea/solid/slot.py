@@ -39,7 +39,7 @@ BLOCK_EDGE_POINTS = 24
 
 
 @dataclass(frozen=True)
-class Block:
+class SlottedTube:
     """The slot and the plain tube that it is cut into; lengths [mm].
 
     Attributes

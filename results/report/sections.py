@@ -247,7 +247,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         )
 
 
-def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> Words:
+def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:
     said = (
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )
