@@ -41,7 +41,7 @@ from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import part_surfaces
 
-LARGEST_STEP = radians(10)
+LARGEST_SWEPT_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
 PolarMap = Callable[[np.ndarray], np.ndarray]
 """Nodes (n, 3) as (r, φ, z) of the revolved mesh to those of the part's."""
@@ -106,7 +106,7 @@ def _prisms(
         first = triangulate(block.outline(own), block.edges)
         grading = block.grading(grading)
     rest = graded_mesh(first, critical, grading, finer if block is None else block.finer(grading))
-    step = LARGEST_STEP if finer is None else finer.step_rad
+    step = LARGEST_SWEPT_STEP if finer is None else finer.step_rad
     if column is None:
         if block is None:
             angles = np.linspace(0, wedge, ceil(wedge / step) + 1)

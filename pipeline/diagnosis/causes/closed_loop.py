@@ -10,8 +10,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 
 LOOP_ROWS = 201
 """Of a branch from end to end: torques 1 % of the largest apart; odd, so that one is 0."""
-AT_ZERO = LOOP_ROWS // 2
-"""Row of T = 0."""
+MIDDLE_ROW = LOOP_ROWS // 2
+"""Row of such a branch with T = 0."""
 
 
 def loop_widths(angle: Callable[[History], np.ndarray], largest_Nm: float) -> np.ndarray:

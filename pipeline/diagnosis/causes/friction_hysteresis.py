@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
-from flexspline.pipeline.diagnosis.causes.closed_loop import AT_ZERO, loop_widths
+from flexspline.pipeline.diagnosis.causes.closed_loop import MIDDLE_ROW, loop_widths
 from flexspline.pipeline.diagnosis.causes.micro_slip import (
     LEAST_POWER,
     MOST_POWER,
@@ -218,7 +218,7 @@ class FrictionHysteresis(Cause):
 
         Of torque carried ahead of the teeth it is what elasticity makes of it.
         """
-        return float(self._widths(elements, rig)[AT_ZERO])
+        return float(self._widths(elements, rig)[MIDDLE_ROW])
 
     def widest_arcsec(self, elements: Sequence[Element], rig: Rig) -> float:
         """Full width of that loop where it is widest: friction that grows with torque has none at T = 0."""

@@ -30,7 +30,7 @@ def _held_still(history: History) -> History:
     return turning_like(history, replace(history, torque_Nm=history.memo[key]))
 
 
-WAY, STRAIGHT = 5, 0.02
+ROWS_BESIDE_TURN, STRAIGHT_BESIDE_TURN = 5, 0.02
 """Rows of a way on one side of a turn; of the torque along it, its rms off a line beyond the noise. From the
 top of a sine on it is three times that."""
 CLEAR = 4.0
@@ -90,17 +90,17 @@ def _turned_at(
     Row a − 1 may lie on either side: the straight ways through the rows before it, and from a on, meet at the
     turn. None where the ways are short against the noise, or bent, or meet elsewhere: then a − 1 is the turn.
     """
-    if time is None or a < WAY + 1 or a + WAY > len(torque):
+    if time is None or a < ROWS_BESIDE_TURN + 1 or a + ROWS_BESIDE_TURN > len(torque):
         return None
     last, lines = a - 2, []
-    for rows in (np.arange(a - 1 - WAY, a - 1), np.arange(a, a + WAY)):
+    for rows in (np.arange(a - 1 - ROWS_BESIDE_TURN, a - 1), np.arange(a, a + ROWS_BESIDE_TURN)):
         t = time[rows] - time[last]
         if np.diff(t).min() <= 0:
             return None
         slope, level = np.polyfit(t, torque[rows], 1)
         span = abs(torque[rows[-1]] - torque[rows[0]])
         off = rms(torque[rows] - level - slope * t)
-        if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT * span:
+        if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT_BESIDE_TURN * span:
             return None
         lines.append((slope, level))
     (before, level), (after, later) = lines

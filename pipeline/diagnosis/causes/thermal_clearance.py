@@ -33,7 +33,7 @@ SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
 a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
 steady air: what it keeps of the last test or of the night."""
 
-STEADY_K = 2.0
+STEADY_AIR_K = 2.0
 """Air that changes by less in a record is steady: sensors differ by half of it, and no gap is seen to change
 with it."""
 MOST_PER_K = 10.0
@@ -87,7 +87,7 @@ class ThermalClearance(Cause):
         """A gap that grows for want of a temperature that no sensor saw, or none saw change, must be one that
         metals can make."""
         air = rig.history.temperature_C
-        steady = air is not None and float(np.ptp(air)) < STEADY_K
+        steady = air is not None and float(np.ptp(air)) < STEADY_AIR_K
         unseen = [e for e in elements if steady or MOST_OFF in e.shape]
         return all(abs(e.amplitudes[0]) <= MOST_PER_K for e in unseen)
 

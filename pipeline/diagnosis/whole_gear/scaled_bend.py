@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED
 
 LOOP_POWERS = (0, 1, 2)
 """Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""
-FEWEST_ROWS = 24
+FEWEST_BEND_ROWS = 24
 """Twice the unknowns of one unit."""
 
 
@@ -34,7 +34,7 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     history = sweep.history
     largest = float(np.abs(history.torque_Nm).max())
     rows = np.abs(history.torque_Nm) > BAND_SHARE * largest
-    if int(rows.sum()) < FEWEST_ROWS:
+    if int(rows.sum()) < FEWEST_BEND_ROWS:
         return prediction
     bend, line = prediction.bend.at(history.torque_Nm), prediction.compliance * history.torque_Nm
     beside = _beside(sweep, largest)[rows]
