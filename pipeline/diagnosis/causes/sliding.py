@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import wrightomega
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
+from flexspline.pipeline.diagnosis.causes.operators import last_direction, steadied
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
@@ -64,8 +64,8 @@ def carried_share(
     for rows in history.unit_slices:
         moved = np.r_[0.0, torque[rows]]
         step = np.sign(np.diff(moved))
-        way = last_way(step)
-        starts = np.flatnonzero(np.diff(way, prepend=np.nan) != 0)
+        side = last_direction(step)
+        starts = np.flatnonzero(np.diff(side, prepend=np.nan) != 0)
         time = None if history.time_s is None else history.time_s[rows]
         left, turn = 1.0, 0.0
         share = np.zeros(len(rows))
@@ -73,11 +73,11 @@ def carried_share(
             if a > 0:
                 where = _turned_at(history.torque_Nm[rows], time, int(a), deadband_Nm)
                 before, (turn, earlier) = turn, where or (float(moved[a]), False)
-                y = float(to_come(left, np.abs(np.array(turn - before)))) if way[a - 1] else 1.0
-                left = max(1 - way[a] * way[a - 1] * (1 - y), ABOVE_ZERO)
+                y = float(to_come(left, np.abs(np.array(turn - before)))) if side[a - 1] else 1.0
+                left = max(1 - side[a] * side[a - 1] * (1 - y), ABOVE_ZERO)
                 a -= earlier
-            if way[b - 1] != 0:
-                share[a:b] = way[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))
+            if side[b - 1] != 0:
+                share[a:b] = side[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))
         out[rows] = share
     return out
 

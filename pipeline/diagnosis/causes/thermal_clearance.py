@@ -68,8 +68,8 @@ class ThermalClearance(Cause):
         twice = [{**shape, STAGES: 2.0} for shape in lagging]
         most = max(SWING_SHARE * float(np.ptp(rig.history.temperature_C)), LEAST_MOST_K)
         off = [
-            {**shape, way: OFF_SHARE * most, MOST_OFF: most}
-            for shape in (*lagging[1:], *twice[1:]) for way in (WARMER, COLDER)
+            {**shape, side: OFF_SHARE * most, MOST_OFF: most}
+            for shape in (*lagging[1:], *twice[1:]) for side in (WARMER, COLDER)
         ]  # fmt: skip
         return [*plain, *lagging, *twice, *off]
 

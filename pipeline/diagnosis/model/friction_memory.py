@@ -51,11 +51,11 @@ def smaller_loops(span: MeasuredSpan, history: History) -> np.ndarray:
 def reached_Nm(span: MeasuredSpan, history: History) -> np.ndarray:
     """(n,) largest |torque| since the turn before the last; infinite before a unit's first turn."""
     largest = max(map(abs, span.torque_Nm))
-    direction = rising(history, LARGEST_NOISE * largest)  # whatever noise the torque has
+    rises = rising(history, LARGEST_NOISE * largest)  # whatever noise the torque has
     out = np.full(len(history), np.inf)
     for rows in history.unit_slices:
-        way, size = direction[rows], np.abs(history.torque_Nm[rows])
-        turns = np.flatnonzero((np.diff(way) != 0) & (way[:-1] != 0)) + 1
+        direction, size = rises[rows], np.abs(history.torque_Nm[rows])
+        turns = np.flatnonzero((np.diff(direction) != 0) & (direction[:-1] != 0)) + 1
         starts = np.r_[0, turns]
         for k in range(1, len(starts)):
             end = starts[k + 1] if k + 1 < len(starts) else len(rows)

@@ -50,8 +50,8 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
 def _beside(sweep: Sweep, largest: float) -> np.ndarray:
     """(n, k) columns of all that is neither slope nor bend."""
     history = sweep.history
-    share, way = history.torque_Nm / largest, direction_of_loading(history)
-    columns = [history.sign, *(way * np.abs(share) ** p for p in LOOP_POWERS)]
+    share, direction = history.torque_Nm / largest, direction_of_loading(history)
+    columns = [history.sign, *(direction * np.abs(share) ** p for p in LOOP_POWERS)]
     for unit in history.unit_slices:
         for values in (np.ones(len(unit)), np.linspace(-1, 1, len(unit))):
             own = np.zeros(len(history))
