@@ -18,7 +18,7 @@ KINEMATIC = "kinematic_error"
 """This cause's id."""
 
 
-class KinematicError(PeriodicShapes, Cause):
+class PeriodicPositionDeviation(PeriodicShapes, Cause):
     """Angle Σ a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
 
     id = KINEMATIC

@@ -19,7 +19,11 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE, Doubt, deviation_of
+from flexspline.pipeline.diagnosis.model.doubt import (
+    CARRIED_UNSURE,
+    PredictionUncertainty,
+    deviation_of,
+)
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
@@ -166,7 +170,7 @@ def test_deviation_of_a_prediction() -> None:
     still = np.zeros((4, 4))
     still[3, 3] = 0.02**2  # of the friction torque; zero, compliance and gap are known
     span = span_of(along(LOOP))
-    plain = Doubt(0.5, 0.0, np.zeros((4, 4)), span)
+    plain = PredictionUncertainty(0.5, 0.0, np.zeros((4, 4)), span)
     read = along(LOOP)
     far = slice(260, None)  # after the first turn, where the friction's state is known
     std = deviation_of(MODEL, replace(plain, covariance=still), read, ("",)).std_arcsec
