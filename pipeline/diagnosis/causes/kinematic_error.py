@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.periodic import (
     PeriodicShapes,
     harmonic,
@@ -31,5 +31,5 @@ class PeriodicPositionDeviation(PeriodicShapes, Cause):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history)
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return largest_amplitude(elements)

@@ -7,7 +7,7 @@ from math import log
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
@@ -57,7 +57,7 @@ class ThermalClearance(Cause):
     shows_as = "gap"
     reveals = "the same sweep at another temperature, the gear soaked, in the same cycle"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         if rig.history.temperature_C is None:
             return []
         longest = LAGS[-1] * rig.duration_s
@@ -83,7 +83,7 @@ class ThermalClearance(Cause):
         """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
         return MOST_OFF in shape
 
-    def plausible(self, elements: Sequence[Element], rig: Rig) -> bool:
+    def plausible(self, elements: Sequence[Element], rig: FitContext) -> bool:
         """A gap that grows for want of a temperature that no sensor saw, or none saw change, must be one that
         metals can make."""
         air = rig.history.temperature_C

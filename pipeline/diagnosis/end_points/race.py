@@ -10,7 +10,7 @@ from math import log
 import numpy as np
 from scipy.special import logsumexp
 
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, StiffnessHardening
@@ -57,7 +57,7 @@ class Hypothesis:
 
 
 def race(
-    points: EndPoints, rig: Rig, deviations: UnitDeviations, suspects: Sequence[int]
+    points: EndPoints, rig: FitContext, deviations: UnitDeviations, suspects: Sequence[int]
 ) -> list[Hypothesis]:
     """All hypotheses, the likeliest first; the null has no causes and score 0."""
     terms = end_point_regressors(points, rig)

@@ -15,7 +15,7 @@ from histories import PREDICTION, sweep
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -97,7 +97,7 @@ def test_the_gap_is_crossed_at_the_friction_torque_each_way() -> None:
 
 def test_the_loop_s_width_is_what_elasticity_makes_of_it() -> None:
     friction = known_causes()["friction_hysteresis"]
-    rig = replace(Rig(PREDICTION, sweep()), measured=(12.0, 0.0))
+    rig = replace(FitContext(PREDICTION, sweep()), measured=(12.0, 0.0))
     width = friction.magnitude([AHEAD], rig)
     assert width == pytest.approx(2 * FRICTION * 12.0, rel=1e-3)  # the round corner
 
