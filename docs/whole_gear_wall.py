@@ -10,7 +10,7 @@ from pathlib import Path
 from scipy.optimize import brentq
 from whole_gear_figures import CATALOGUE, sized_design
 
-from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, Ends, Tube
+from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, EndFixity, Tube
 from flexspline.geometry.sized import PITCH_RADIUS_PER_SIZE_mm
 from flexspline.pipeline.largest_torques import tube_of
 
@@ -37,7 +37,7 @@ def buckling_torques() -> dict[float, float]:
     return found
 
 
-def wall_share(tube: Tube, torque_Nm: float, pitch_radius: float, ends: Ends) -> float:
+def wall_share(tube: Tube, torque_Nm: float, pitch_radius: float, ends: EndFixity) -> float:
     """Of the pitch radius: the wall of a perfect tube that buckles at that torque."""
 
     def excess(share: float) -> float:

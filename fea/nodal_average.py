@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-Part = tuple[np.ndarray, np.ndarray, np.ndarray]
+ElementValues = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Of some elements: nodes (m, k), the weight of each (m,), and its values (m, k, components) at its nodes."""
 
 
-def nodal_average(count: int, components: int, parts: Iterable[Part]) -> np.ndarray:
+def nodal_average(count: int, components: int, parts: Iterable[ElementValues]) -> np.ndarray:
     """Weighted mean (count, components) at every node over the elements that meet there."""
     shares, sums = np.zeros(count), np.zeros((components, count))
     for nodes, weight, values in parts:

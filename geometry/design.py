@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from math import pi, radians
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationError
 
 from flexspline.geometry import ranges
 from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
@@ -246,6 +246,20 @@ class Design(DesignTable):
     load: Load
     uncertainty: Uncertainty = Uncertainty()
     solver: Solver = Solver()
+
+    def __init__(self, /, **tables: Any) -> None:
+        """Of a design file's tables; the rules that tie several keys together are `geometry.checks`'.
+
+        Raises
+        ------
+        DesignError : unknown, missing or wrong key; its `__cause__` is pydantic's error.
+        """
+        try:
+            super().__init__(**tables)
+        except ValidationError as fault:
+            from flexspline.geometry.plain_words import translate  # which reads the schema
+
+            raise translate(fault, tables) from fault
 
     @property
     def w0_mm(self) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial
 
-Table = dict[str, Any]
+TomlTable = dict[str, Any]
 
 # The cup is that of examples/xb1-40.toml; the hat has the same tube, shorter.
 _STEEL = {
@@ -17,7 +17,7 @@ _STEEL = {
     "fatigue_limit_MPa": 500.0,
     "density_kg_per_m3": 7850.0,
 }
-_CUP: Table = {
+_CUP: TomlTable = {
     "kind": "cup",
     "inner_diameter_mm": 38.4,
     "wall_thickness_mm": 0.4,
@@ -37,7 +37,7 @@ _CUP: Table = {
     "bolt_circle_diameter_mm": 13.0,
     "bolt_hole_diameter_mm": 2.5,
 }
-_CUP_SHAFT: Table = {
+_CUP_SHAFT: TomlTable = {
     "bolt_count": 6,
     "bolt_circle_diameter_mm": 13.0,
     "bolt_hole_diameter_mm": 2.5,
@@ -49,7 +49,7 @@ _CUP_SHAFT: Table = {
     ],
     "keyway": {"width_mm": 5.0, "depth_mm": 3.0, "length_mm": 10.0},
 }
-_HAT: Table = {
+_HAT: TomlTable = {
     "kind": "hat",
     "inner_diameter_mm": 38.4,
     "wall_thickness_mm": 0.4,
@@ -69,7 +69,7 @@ _HAT: Table = {
     "bolt_circle_diameter_mm": 61.0,
     "bolt_hole_diameter_mm": 3.2,
 }
-_HAT_SHAFT: Table = {
+_HAT_SHAFT: TomlTable = {
     "bolt_count": 12,
     "bolt_circle_diameter_mm": 61.0,
     "bolt_hole_diameter_mm": 3.2,
@@ -81,7 +81,10 @@ _HAT_SHAFT: Table = {
     ],
     "keyway": {"width_mm": 5.0, "depth_mm": 3.0, "length_mm": 10.0},
 }
-_FIRST: dict[str, tuple[Table, Table]] = {"cup": (_CUP, _CUP_SHAFT), "hat": (_HAT, _HAT_SHAFT)}
+_FIRST: dict[str, tuple[TomlTable, TomlTable]] = {
+    "cup": (_CUP, _CUP_SHAFT),
+    "hat": (_HAT, _HAT_SHAFT),
+}
 """Flexspline and shaft of each kind."""
 MODELS = {"cup": "examples/xb1-40.toml", "hat": "`flexspline init hat`"}
 """Which design the first of a kind is."""
@@ -95,7 +98,7 @@ BENT = {"hat": "The wave generator stresses it above its fatigue limit (`flexspl
 """Of the first design of a kind where it does."""
 
 
-def first_values(kind: str) -> Table:
+def first_values(kind: str) -> TomlTable:
     """The tables of the first design of a kind.
 
     Raises

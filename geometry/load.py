@@ -14,7 +14,7 @@ from flexspline.geometry.checks import check
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING, DesignError, DesignFileError
 from flexspline.geometry.input_file import InputFileError, read_input
-from flexspline.geometry.plain_words import kind_of, translate, without_tag
+from flexspline.geometry.plain_words import kind_of, without_tag
 from flexspline.geometry.schema import ends_of
 from flexspline.geometry.toml_read import EmptyTomlError, TomlError, toml_tables
 
@@ -92,23 +92,23 @@ def design_from(data: Mapping[str, Any]) -> Design:
     DesignError : unknown, missing or wrong key, or impossible geometry.
     """
     try:
-        design = Design.model_validate(data)
-    except ValidationError as fault:
-        refused = translate(fault, data)
-        raise _by_the_rest(refused, fault, data) or refused from None
+        design = Design(**data)
+    except DesignError as refused:
+        raise _by_the_rest(refused, data) or refused from None
     check(design)
     return design
 
 
-def _by_the_rest(
-    refused: DesignError, fault: ValidationError, data: Mapping[str, Any]
-) -> DesignError | None:
+def _by_the_rest(refused: DesignError, data: Mapping[str, Any]) -> DesignError | None:
     """The same refusal with the range that the rest of the design leaves, where it can be told.
 
     What a key may hold by itself is wider: its nearest end would be refused again.
     """
+    fault = refused.__cause__
+    if refused.others or not isinstance(fault, ValidationError):
+        return None
     location = without_tag(fault.errors()[0]["loc"])
-    if refused.others or not (ends := ends_of(location, kind_of(data))):
+    if not (ends := ends_of(location, kind_of(data))):
         return None
     tried = deepcopy(dict(data))
     table: Any = tried
@@ -117,13 +117,15 @@ def _by_the_rest(
     for end in _nearest(refused.value, ends):
         table[location[-1]] = end
         try:
-            check(Design.model_validate(tried))
+            possible = Design(**tried)
+        except DesignError:  # a fault that another one hid
+            return None
+        try:
+            check(possible)
         except DesignError as further:
             if further.key == refused.key:
                 reason = f"{_what(refused)}{further.reason}"
                 return DesignError(refused.key, refused.value, reason)
-        except ValidationError:  # a fault that another one hid
-            return None
     return None
 
 

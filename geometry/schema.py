@@ -9,7 +9,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.ranges import Range
 
 Location = tuple[str | int, ...]
-Node = dict[str, Any]
+SchemaNode = dict[str, Any]
 
 UNITS = {
     "_mm": "mm",
@@ -37,7 +37,7 @@ def key_words(key: str) -> tuple[str, str]:
 
 
 @cache
-def json_schema() -> Node:
+def json_schema() -> SchemaNode:
     """JSON Schema (2020-12) of the design file; editors complete and check with it."""
     schema = Design.model_json_schema()
     return {
@@ -47,7 +47,7 @@ def json_schema() -> Node:
     }
 
 
-def node_at(location: Location, kind: str | None = None) -> Node:
+def node_at(location: Location, kind: str | None = None) -> SchemaNode:
     """The schema of a key; `kind` says which flexspline is meant. Empty if there is no such key."""
     node = json_schema()
     for part in location:
@@ -59,7 +59,7 @@ def node_at(location: Location, kind: str | None = None) -> Node:
     return resolved(node, kind)
 
 
-def resolved(node: Node, kind: str | None = None) -> Node:
+def resolved(node: SchemaNode, kind: str | None = None) -> SchemaNode:
     """Follow a reference, an optional value's type, or the flexspline's kind."""
     outer = {k: v for k, v in node.items() if k in ("description", "default")}
     if "$ref" in node:
@@ -119,7 +119,7 @@ def ends_of(location: Location, kind: str | None = None) -> list[float]:
     return [int(end) if node["type"] == "integer" else float(end) for end in ends]
 
 
-def _range(node: Node) -> str:
+def _range(node: SchemaNode) -> str:
     if "anyOf" not in node:
         return str(Range(node["minimum"], node["maximum"]))
     zero, rest = node["anyOf"]  # zero stands for "none"

@@ -15,7 +15,7 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.first_values import LESS_BENT, MODELS, Table, first_values
+from flexspline.geometry.first_values import LESS_BENT, MODELS, TomlTable, first_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.percent import percent
 from flexspline.geometry.ranges import Range
@@ -75,7 +75,7 @@ def sized_template(kind: str, size: float, ratio: int, rated_Nm: float | None = 
 
 def sized_values(
     kind: str, size: float, ratio: int, rated_Nm: float | None = None
-) -> tuple[Table, Why]:
+) -> tuple[TomlTable, Why]:
     """The design file's tables, and where each assumed value comes from; errors as `sized_template`."""
     for option, value, allowed in (("--size", size, SIZES), ("--ratio", ratio, RATIOS)):
         if value not in allowed:
@@ -131,7 +131,7 @@ def sized_values(
     return values, why
 
 
-def _thin_walled(flexspline: Table, first: Table, pitch: float, why: Why) -> None:
+def _thin_walled(flexspline: TomlTable, first: TomlTable, pitch: float, why: Why) -> None:
     """The tube's wall of a catalogue, and a diaphragm in proportion to it."""
     wall = WALL_SHARE * pitch
     walls = first["diaphragm_thickness_mm"] / first["wall_thickness_mm"]
@@ -143,7 +143,7 @@ def _thin_walled(flexspline: Table, first: Table, pitch: float, why: Why) -> Non
     why[("flexspline", "diaphragm_thickness_mm")] = f"{walls:g} walls"
 
 
-def _scaled(table: Table, location: Location, factor: float, was: float, why: Why) -> Any:
+def _scaled(table: TomlTable, location: Location, factor: float, was: float, why: Why) -> Any:
     """Lengths times a factor, all else as it is; `was`: the pitch radius that they belong to [mm]."""
     if isinstance(table, list):
         return [_scaled(each, (*location, i), factor, was, why) for i, each in enumerate(table)]

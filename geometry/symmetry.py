@@ -7,7 +7,7 @@ from typing import Literal
 
 from flexspline.geometry.part import Part
 
-LoadCase = Literal["torsion", "lobes", "ellipse"]
+SymmetryCase = Literal["torsion", "lobes", "ellipse"]
 ARBITRARY_DEG = 30.0
 """A body of revolution under even torque may be cut anywhere: long elements want a small sector,
 a mesh of fair shape wants one no thinner than this."""
@@ -31,7 +31,7 @@ class Sector:
         return 360.0 / self.degrees
 
 
-def sector_of(part: Part, case: LoadCase) -> Sector:
+def sector_of(part: Part, case: SymmetryCase) -> Sector:
     """Sector for ``"torsion"`` (even torque), ``"lobes"`` or the wave generator's ``"ellipse"``.
 
     N equal holes under even torque leave 1/(2N): every plane through the axis and a hole, or midway

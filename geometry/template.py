@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.first_values import BENT, LESS_BENT, Table, first_values
+from flexspline.geometry.first_values import BENT, LESS_BENT, TomlTable, first_values
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
 from flexspline.geometry.toml_text import quoted
 
@@ -44,7 +44,7 @@ def template(kind: str = "cup") -> str:
 
 def text_of(
     title: str,
-    values: Table,
+    values: TomlTable,
     kind: str,
     why: Mapping[Location, str],
     stated: frozenset[Location] = frozenset(),
@@ -66,7 +66,7 @@ def design_text(design: Design) -> str:
 
 def _lines(
     location: Location,
-    table: Table,
+    table: TomlTable,
     kind: str,
     hidden: frozenset[Location],
     optional: bool,

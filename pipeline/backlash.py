@@ -9,7 +9,7 @@ from math import cos, hypot, isfinite, pi, radians
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import FlexsplineError
+from flexspline.geometry.errors import FlexsplineError, short
 from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
@@ -39,9 +39,26 @@ def series_stiffness(K_b: float, K_e: float) -> float:
 class StiffnessValueError(FlexsplineError, ValueError):
     """A stiffness that is not a positive number; `name`, `value` [N·m/rad]."""
 
-    def __init__(self, name: str, value: float) -> None:
+    def __init__(self, name: str, value: object) -> None:
         self.name, self.value = name, value
-        super().__init__(f"{name} = {value:g} N·m/rad: must be above 0 and finite")
+        super().__init__(
+            f"{name} = {short(value)}: must be a number of N·m/rad, above 0 and finite"
+        )
+
+
+def require_stiffness(name: str, value: object) -> None:
+    """Refuse what is no stiffness [N·m/rad]; `name` is what the refusal calls it.
+
+    Raises
+    ------
+    StiffnessValueError : no number, or one that is not positive and finite.
+    """
+    try:
+        good = isfinite(value) and value > 0  # type: ignore[arg-type, operator]
+    except (TypeError, OverflowError):  # text, or a whole number that no double holds
+        good = False
+    if not good:
+        raise StiffnessValueError(name, value)
 
 
 @dataclass(frozen=True)
@@ -124,7 +141,8 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
     StiffnessValueError : a stiffness that is not positive and finite.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    _check_stiffness(K_b_Nm_per_rad, K_e_Nm_per_rad)
+    require_stiffness("K_b", K_b_Nm_per_rad)
+    require_stiffness("K_e", K_e_Nm_per_rad)
     torque, doubt = design.load.torque_Nm, design.uncertainty
     shaft = windup(torque, K_e_Nm_per_rad)
     flexspline = windup(torque, K_b_Nm_per_rad)
@@ -194,7 +212,8 @@ def angle_rad(
     StiffnessValueError : a stiffness that is not positive and finite.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    _check_stiffness(K_b_Nm_per_rad, K_e_Nm_per_rad)
+    require_stiffness("K_b", K_b_Nm_per_rad)
+    require_stiffness("K_e", K_e_Nm_per_rad)
     torque = np.asarray(torque_Nm, float)
     compliance = series_compliance(K_b_Nm_per_rad, K_e_Nm_per_rad)
     return torque * compliance + np.sign(torque) * gap_rad(design) / 2
@@ -214,9 +233,3 @@ def _other_play_clearance(design: Design) -> float | None:
         return play_clearance(design, "small_displacement" if involute else "involute")
     except BearingPlayDomainError:
         return None
-
-
-def _check_stiffness(K_b: float, K_e: float) -> None:
-    for name, value in (("K_b", K_b), ("K_e", K_e)):
-        if not (isfinite(value) and value > 0):
-            raise StiffnessValueError(name, value)

@@ -21,7 +21,7 @@ and free rim of a hat with sixteen holes, 0.1 % asked: ± 0.30, 0.75 and 1.46 % 
 ± 0.32, 0.78 and 1.48 % in 4.9."""
 TOO_FAR = "the part without holes and the part with the ring of its holes cut out differ by more"
 
-Solve = Callable[[PartModel], Stiffness]
+PartSolver = Callable[[PartModel], Stiffness]
 
 
 def has_enclosure(model: PartModel) -> bool:
@@ -34,7 +34,7 @@ def may_answer(model: PartModel) -> bool:
     return has_enclosure(model) and model.context.design.solver.model == "auto"
 
 
-def enclosure_of(model: PartModel, solve: Solve, expected: float = inf) -> Stiffness:
+def enclosure_of(model: PartModel, solve: PartSolver, expected: float = inf) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
     `expected` is the half-width of another load case, 0 where a fine solution costs little: where it is near
@@ -58,7 +58,7 @@ def enclosure_of(model: PartModel, solve: Solve, expected: float = inf) -> Stiff
     return replace(found, shortfall=found.shortfall or Shortfall(TOO_FAR))
 
 
-def _enclosed_to(model: PartModel, solve: Solve, tolerance_pct: float) -> Stiffness:
+def _enclosed_to(model: PartModel, solve: PartSolver, tolerance_pct: float) -> Stiffness:
     """`enclosed`, with each body solved to its own tolerance."""
     design = model.context.design
     asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
@@ -67,7 +67,9 @@ def _enclosed_to(model: PartModel, solve: Solve, tolerance_pct: float) -> Stiffn
     return enclosed(model.part, lambda body: solve(replace(model, context=context, part=body)))
 
 
-def enclosure_if_any(model: PartModel, solve: Solve, expected: float = inf) -> Stiffness | None:
+def enclosure_if_any(
+    model: PartModel, solve: PartSolver, expected: float = inf
+) -> Stiffness | None:
     """`enclosure_of` where there is one and it can be solved: the solid model answers without it too.
 
     Raises

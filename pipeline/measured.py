@@ -37,6 +37,7 @@ def diagnose(
     Raises
     ------
     DesignError
+    StiffnessValueError : a stiffness given is no positive, finite number.
     MeasurementError : the file cannot be accepted.
     ComputationError : a stiffness that is needed was not found.
 

@@ -27,11 +27,11 @@ from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.parts import LAYERED_COARSER, PartModel
 
-Kind = Literal["swept", "layered", "tetwild"]
+MeshKind = Literal["swept", "layered", "tetwild"]
 """Swept about the axis, a shaft's layers along it, or fTetWild's."""
-KINDS: tuple[Kind, ...] = get_args(Kind)
+KINDS: tuple[MeshKind, ...] = get_args(MeshKind)
 """In the order in which they are tried."""
-SWEEPS: tuple[Kind, ...] = ("swept", "layered")
+SWEEPS: tuple[MeshKind, ...] = ("swept", "layered")
 """Those that no mesher makes."""
 
 COARSER_EDGES, COARSENINGS = 1.5, 3
@@ -53,7 +53,7 @@ class OtherKindError(FlexsplineError):
     `kind` is the last one's.
     """
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: MeshKind) -> None:
         self.kind = kind
         super().__init__(f"the next mesh is another kind: {kind}")
 
@@ -64,7 +64,7 @@ class MeshedPart:
 
     mesh: TetMesh
     sharp_edges: np.ndarray
-    kind: Kind
+    kind: MeshKind
 
 
 @dataclass(frozen=True)
@@ -72,13 +72,13 @@ class PartMeshes:
     """The meshes that can be had of a part; its CAD surface is made once, where one needs it."""
 
     model: PartModel
-    kinds: tuple[Kind, ...] = KINDS
+    kinds: tuple[MeshKind, ...] = KINDS
     """Those that are tried, of what the part allows."""
     most_of_first: float = inf
     """Elements of a first mesh, after all coarsening, beyond which it is not begun."""
 
     @cached_property
-    def _failed(self) -> set[tuple[Kind, MeshSpec]]:
+    def _failed(self) -> set[tuple[MeshKind, MeshSpec]]:
         """Sweeps that failed a check: they would again."""
         return set()
 

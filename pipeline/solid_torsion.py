@@ -25,8 +25,8 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import (
     FIRST_ELEMENTS,
     KINDS,
-    Kind,
     MeshedPart,
+    MeshKind,
     OtherKindError,
     PartMeshes,
 )
@@ -90,7 +90,7 @@ def copies_in_rim(model: PartModel) -> int:
 def twisted(
     model: PartModel,
     tolerance: float,
-    kinds: tuple[Kind, ...] = KINDS,
+    kinds: tuple[MeshKind, ...] = KINDS,
     most_of_first: float = inf,
     seconds: float = SOLID_SECONDS,
     second_s: float = MESHER_SECONDS,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline.backlash import series_compliance
+from flexspline.pipeline.backlash import require_stiffness, series_compliance
 
 if TYPE_CHECKING:
     from flexspline.pipeline.parts import AnalysisContext
@@ -33,7 +33,15 @@ class StiffnessPair:
 
 
 def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
-    """Both K [N·m/rad] as the user gives them; None where one is to be solved."""
+    """Both K [N·m/rad] as the user gives them; None where one is to be solved.
+
+    Raises
+    ------
+    StiffnessValueError : a stiffness given is no positive, finite number.
+    """
+    for name, K in (("K_b", K_b), ("K_e", K_e)):
+        if K is not None:
+            require_stiffness(name, K)
     return None if K_b is None or K_e is None else StiffnessPair(K_b, K_e)
 
 
@@ -45,6 +53,7 @@ def stiffness_pair(
     Raises
     ------
     DesignError
+    StiffnessValueError : a stiffness given is no positive, finite number.
     NotFoundError : a stiffness that is needed failed.
     """
     if given := given_pair(K_b, K_e):

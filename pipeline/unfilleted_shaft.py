@@ -21,7 +21,7 @@ from flexspline.pipeline.revolved import torsion
 from flexspline.pipeline.solid_torsion import SOLID_SECONDS, TwistedPart, twisted
 
 LESS, MORE = "the shaft without its fillets", "the shaft whose steps are moved by the fillet"
-BODY_SHARE = 0.7
+UNFILLETED_BODY_SHARE = 0.7
 """Of the tolerance, for each of the two shafts: fillets of 0.3 % of the diameter leave ± 0.01 to 0.2 %."""
 FILLETS = "its fillets"
 MOST_WITH_FILLETS = 60_000
@@ -92,7 +92,7 @@ def _hardly_differ(model: PartModel, tolerance: float) -> bool:
 
 
 def _between_shafts(model: PartModel, tolerance: float) -> TwistedPart:
-    bodies, share = unfilleted_bodies(model.part), BODY_SHARE * tolerance
+    bodies, share = unfilleted_bodies(model.part), UNFILLETED_BODY_SHARE * tolerance
     both = Deadline(SOLID_SECONDS)
 
     def solved(part: Part, seconds: float) -> TwistedPart:

@@ -22,7 +22,7 @@ from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.solid_torsion import copies_in_rim
 
-LARGEST_STEP = radians(5)
+LARGEST_ELLIPSE_STEP = radians(5)
 """Of elements about the axis [rad]."""
 EDGE_WALLS, REACH_WALLS = 0.5, 1.5
 """Edges of the meridian beside the peak, and how far around it, in wall thicknesses.
@@ -31,7 +31,7 @@ Against the axisymmetric peak of parts without holes these three leave 0.3 to 0.
 edges of a wall leave 1 to 2 % (docs/decisions.md)."""
 ELSEWHERE = 2.0
 """Edges away from the peak, in those of the first mesh for K: the peak stays the same to 0.01 %."""
-MOST_ELEMENTS = 60_000
+MOST_ELLIPSE_ELEMENTS = 60_000
 """Of the quarter or half: 270 000 unknowns, 20 s. On a hat 84 624 gave 296.3 MPa, edges 1.5 times as long
 (56 376) 297.0, and the mesh that gave K, all that a limit of 40 000 would leave, 290.9."""
 COARSER_RATIOS = (1.0, 1.5, 2.0)
@@ -98,7 +98,7 @@ def _reach_mm(flexspline: PartModel) -> float:
 def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPart | None:
     """The torsion sector swept with edges of the meridian that are short beside `places` (r, z) only.
 
-    None where a check fails or the mesh would be larger than MOST_ELEMENTS at its coarsest.
+    None where a check fails or the mesh would be larger than MOST_ELLIPSE_ELEMENTS at its coarsest.
     """
     design = flexspline.context.design
     spec = flexspline.first_spec
@@ -110,9 +110,11 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
     times = copies_in_rim(flexspline)
     with flexspline.context.progress.stage("mesh for the wave generator"):
         for coarser in COARSER_RATIOS:
-            finer = Finer(coarser * LARGEST_STEP, places, _reach_mm(flexspline), coarser * edge)
+            finer = Finer(
+                coarser * LARGEST_ELLIPSE_STEP, places, _reach_mm(flexspline), coarser * edge
+            )
             try:
-                return PartMeshes(flexspline).swept(even, finer, MOST_ELEMENTS / times)
+                return PartMeshes(flexspline).swept(even, finer, MOST_ELLIPSE_ELEMENTS / times)
             except TooManyElementsError:
                 continue
     return None

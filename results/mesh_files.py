@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.fea.solid.unfold import MIRRORED_CELL
-from flexspline.fea.solid.whole import FACES, whole_part
+from flexspline.fea.solid.whole import FACES, unloaded_part
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
@@ -59,7 +59,7 @@ class PatchedMesh:
     @classmethod
     def of(cls, part: str, mesh: TetMesh) -> PatchedMesh:
         """The part in the round from its sector; planes of symmetry are inside it and no patches."""
-        whole = whole_part(mesh, np.zeros_like(mesh.nodes), np.zeros(len(mesh.nodes)), "symmetric")
+        whole = unloaded_part(mesh)
         inside = ("", SYMMETRY_START, SYMMETRY_END)
         found = [i for i, name in enumerate(whole.patches) if name not in inside]
         cell, face = np.nonzero(np.isin(whole.face_patch, found))

@@ -7,7 +7,7 @@ from typing import Literal
 
 from flexspline.results.numbers import THIN, decimals_for, figures_text, grouped, with_power
 
-Kind = Literal["number", "count", "bounds", "text"]
+PrintKind = Literal["number", "count", "bounds", "text"]
 STIFFNESS_UNIT = "N·m/rad"
 MOST_DECIMALS = 6
 """Digits behind the point: ends that agree so far are printed alike."""
@@ -39,7 +39,7 @@ class Quantity:
     unit: str
     name: str
     symbol: str = ""
-    kind: Kind = "number"
+    kind: PrintKind = "number"
     digits: int = 4
     rounded: bool = False
     decimals: int | None = None

@@ -21,6 +21,7 @@ NAMES = {
     "load_design", "Design", "stiffness", "stress", "backlash", "sensitivity", "study", "diagnose",
     "predict", "gear", "FlexsplineError", "__version__",
 }  # fmt: skip
+SWEEP = EXAMPLES / "measured" / "xb1-40-sweep.csv"
 ROOMS = ("geometry", "fea", "pipeline", "results")
 ERRORS = [
     (path, name)
@@ -108,10 +109,18 @@ def test_wrong_words_are_refused_in_one_line() -> None:
         lambda: flexspline.stiffness(solid, "flexspline", "lobes_contact"),  # never by tetrahedra
         lambda: flexspline.stress(design, "torque"),
         lambda: flexspline.backlash(design, K_b=-1.0, K_e=4e4),
+        lambda: flexspline.backlash(design, K_b="3e4", K_e=4e4),
+        lambda: flexspline.backlash(design, K_b=3e4, K_e=10**400),
+        lambda: flexspline.backlash(design, K_e="4e4"),  # before K_b is solved
+        lambda: flexspline.diagnose(design, SWEEP, K_b="3e4", K_e=4e4),
         lambda: flexspline.diagnose(design, "no such file.csv"),
         lambda: flexspline.study("no such study.toml"),
         lambda: design.changed({"flexspline.wall": 0.4}),
         lambda: design.changed({"flexspline.bolt_count": "six"}),
+        lambda: flexspline.Design(),
+        lambda: flexspline.Design(**design.tables | {"flexspline": None}),
+        lambda: flexspline.Design(**design.tables | {"flexspline": object()}),
+        lambda: flexspline.Design(**design.tables | {"load": {"torque_Nm": "much"}}),
     ):
         with pytest.raises(flexspline.FlexsplineError) as caught:
             call()
@@ -133,6 +142,19 @@ def test_a_path_in_place_of_a_design_is_answered_with_how_to_load_it(
     assert "\n" not in str(caught.value)
     if isinstance(given, str | Path):
         assert f'flexspline.load_design("{given}")' in str(caught.value)
+
+
+def test_a_design_of_tables_is_that_of_the_file() -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    assert flexspline.Design(**design.tables) == design
+    with pytest.raises(flexspline.FlexsplineError, match=r"load\.torque_Nm = -1: must be"):
+        flexspline.Design(**design.tables | {"load": {"torque_Nm": -1}})
+
+
+def test_a_model_answers_a_history_without_rows() -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    model = flexspline.diagnose(design, SWEEP, K_b=31377, K_e=43275).model
+    assert model.angle_arcsec([], temperature_C=[]).shape == (0,)
 
 
 def test_changed_is_a_new_design() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -23,6 +24,8 @@ ONLY_IN = {
     "aiohttp": "results", "meshio": "results", "h5py": "results", "pyarrow": "results",
 }  # fmt: skip
 FILES = sorted(p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
+TYPE_NAME = re.compile("_?[A-Z]+[a-z]")
+"""CamelCase; a type variable is a capital or two."""
 TINY = 1e-9
 """Below every tolerance of the pipeline in any unit: a number that is no larger stands for 0."""
 
@@ -64,15 +67,38 @@ def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
     assert [name for name, _ in imports(bad)] == ["results", "cadquery"]
 
 
-def test_no_two_classes_have_one_name() -> None:
+def type_names(text: str) -> Iterator[str]:
+    """Classes of a file, and the names that it gives to types at its top: aliases, NewTypes, `type X = …`."""
+    tree = parsed(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield node.name
+    for node in tree.body:
+        named: list[ast.expr] = []
+        if isinstance(node, ast.Assign):
+            named = node.targets
+        elif isinstance(node, ast.AnnAssign) or type(node).__name__ == "TypeAlias":  # Python 3.12
+            named = [node.target if isinstance(node, ast.AnnAssign) else node.name]
+        for name in named:
+            if isinstance(name, ast.Name) and TYPE_NAME.match(name.id):
+                yield name.id
+
+
+def test_no_two_types_have_one_name() -> None:
     """A reader who searches for a name finds one meaning."""
     places: dict[str, list[str]] = {}
     for path in FILES:
-        for node in ast.walk(parsed(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+        for name in type_names(path.read_text(encoding="utf-8")):
+            places.setdefault(name, []).append(str(path.relative_to(ROOT)))
     twice = {name: files for name, files in places.items() if len(files) > 1}
     assert not twice
+
+
+def test_the_check_sees_what_names_a_type() -> None:
+    text = "class A: ...\nRow = dict[str, str]\nKind: TypeAlias = int\nMOST = 3\nT = TypeVar('T')\nx = 1\n"
+    assert list(type_names(text)) == ["A", "Row", "Kind"]
+    if sys.version_info >= (3, 12):
+        assert list(type_names("type Node = list[Node]\n")) == ["Node"]
 
 
 def tiny_numbers(text: str) -> set[float]:

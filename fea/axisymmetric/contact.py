@@ -29,7 +29,7 @@ ANGLES = 32
 MOST_SEAT_PLACES = 33
 """Along the seat, closer towards its ends. Twice as many change the ratio by 3e-5 at most (seats of up to 513
 nodes), all nodes by 1e-5 (up to 129)."""
-MOST_MESHES, MOST_TRIANGLES = 4, 2400
+MOST_MESHES, MOST_CONTACT_TRIANGLES = 4, 2400
 """Each has four times the triangles of the last; 2400 take 1.7 s, 7000 take 7 to 8 s."""
 CHANGE_RATIOS = (0.25, 0.7)
 """Of the ratio's changes from mesh to mesh, the range believed: edges that halve leave a half at singular
@@ -107,7 +107,7 @@ class _Ratios:
         return self._wanted <= 0 or doubt <= self._wanted * ratio
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh | None:
-        beyond = 4 * mesh.elements > MOST_TRIANGLES or len(self.ratios) == MOST_MESHES
+        beyond = 4 * mesh.elements > MOST_CONTACT_TRIANGLES or len(self.ratios) == MOST_MESHES
         if len(self.ratios) > 1 and beyond:
             return None
         return refined(mesh, np.ones(mesh.elements, bool))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from math import inf
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.recovery import mises_parts
-from flexspline.fea.axisymmetric.space import shape_functions
+from flexspline.fea.quadratic_triangle import lattice_values
 from flexspline.fea.stress_rule import Largest
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
@@ -76,7 +76,7 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
     StressError
         If no point is that far away.
     """
-    s, values = model.space, _lattice_values()
+    s, values = model.space, lattice_values(LATTICE_STEPS)
     lattice, rim = _Lattice(model), _Rim(model)
     acting = np.flatnonzero(nodal.any(axis=0))
     parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
@@ -146,14 +146,6 @@ def _distance(places: np.ndarray, outline: Meridian) -> np.ndarray:
     return np.asarray(_singular(outline).query(places)[0])
 
 
-@cache
-def _lattice_values() -> np.ndarray:
-    """Shape functions (6, q) on the lattice."""
-    i, j = np.meshgrid(np.arange(LATTICE_STEPS + 1), np.arange(LATTICE_STEPS + 1), indexing="ij")
-    inside = i + j <= LATTICE_STEPS
-    return shape_functions(np.stack([i[inside], j[inside]]) / LATTICE_STEPS)
-
-
 class _Lattice:
     """The lattice points of all triangles, and how far they are from what is singular."""
 
@@ -162,7 +154,7 @@ class _Lattice:
         self._outline = model.mesh.outline
         self._corner = _distance(nodes[:, 0], self._outline)
         self._reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
-        self.places = np.matmul(_lattice_values().T, nodes)
+        self.places = np.matmul(lattice_values(LATTICE_STEPS).T, nodes)
 
     def counting(self, distance_mm: float) -> np.ndarray:
         """Mask (m, q) of the points at the distance or farther.

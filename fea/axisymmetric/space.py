@@ -15,6 +15,7 @@ from skfem import ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
 from flexspline.fea.own_assembly import CurvedTriangles, ScalarBasis, Triangles
+from flexspline.fea.quadratic_triangle import shape_functions
 
 
 @dataclass(frozen=True)
@@ -146,13 +147,3 @@ def at_points(space: Space, at: np.ndarray) -> Any:
         basis.mesh, basis.elem, mapping=basis.mapping, quadrature=(at, weights), dofs=basis.dofs,
         disable_doflocs=True,
     )  # fmt: skip
-
-
-def shape_functions(at: np.ndarray) -> np.ndarray:
-    """scikit-fem's P2 shape functions (6, q) at points (2, q) of the reference triangle.
-
-    `interpolate` finds a field's gradients too: where only values are asked for, smoothed stresses here and
-    at the lattice of the peak, it would make `stiffness` of hat-25 1.05 times as long (0.23 of 4.9 s).
-    """
-    element = ElementTriP2()
-    return np.stack([element.lbasis(at, i)[0] for i in range(6)])

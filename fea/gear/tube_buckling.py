@@ -17,8 +17,8 @@ from flexspline.geometry.shapes import Flexspline
 
 LOWER_EDGE_OF_TESTS = 0.67
 """Measured over theory: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
-Ends = Literal["hinged", "clamped"]
-TERMS: dict[Ends, tuple[float, float, float]] = {
+EndFixity = Literal["hinged", "clamped"]
+TERMS: dict[EndFixity, tuple[float, float, float]] = {
     "hinged": (1.27, 9.64, 0.466),
     "clamped": (-2.39, 96.9, 0.605),
 }
@@ -43,7 +43,7 @@ class Tube:
             return None
         return cls(flexspline.inner_radius + wall / 2, wall, length, material)
 
-    def torque_Nm(self, ends: Ends) -> float:
+    def torque_Nm(self, ends: EndFixity) -> float:
         """Of a perfect tube."""
         E, nu = self.material.youngs_modulus_MPa, self.material.poissons_ratio
         H = sqrt(1 - nu * nu) * self.length**2 / (self.wall * self.radius)

@@ -28,7 +28,7 @@ column's height is left to the mesher: fair triangles in it are too many (30 000
 land of 0.05 mm, 400 000 on one of 0.005)."""
 LARGEST_ARC = pi / 2
 """[rad] Of an outline's arc, which stays clearly below the 180° that `Segment` allows."""
-CORE = 0.5
+COLUMN_CORE = 0.5
 """Where the column reaches the axis, the plan's triangles end at this share of the holes' nearest radius:
 within, they would have the sector's angle, a needle's."""
 
@@ -60,7 +60,7 @@ class HoledColumn:
     @property
     def core(self) -> float:
         """Radius [mm] within which the plan is a fan about the axis; 0 for a column off the axis."""
-        return CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
+        return COLUMN_CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
 
     def plan(self, sector_rad: float, arc_rad: float = LARGEST_ARC) -> Meridian:
         """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.solid.quadratic import FACES
+from flexspline.fea.solid.quadratic import CORNER_FACES
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 
-FLAT_ASPECT, FLAT_SHARE = 150.0, 0.1
+FLAT_ASPECT, FLAT_ELEMENTS_SHARE = 150.0, 0.1
 """Longest edge over thickness of a flat element, and the share of such ones that makes an iteration slow. The
 flattest tenth of shafts' meshes had 4 to 55 where it took 10 to 68 steps, 70 to 103 where 100, and 255 to 418
 where 246 to 334."""
@@ -16,14 +16,14 @@ where 246 to 334."""
 
 def mostly_flat(mesh: TetMesh) -> bool:
     """Whether an iteration on the mesh is expected to take longer than factors."""
-    return bool(np.mean(aspects(mesh) > FLAT_ASPECT) > FLAT_SHARE)
+    return bool(np.mean(aspects(mesh) > FLAT_ASPECT) > FLAT_ELEMENTS_SHARE)
 
 
 def aspects(mesh: TetMesh) -> np.ndarray:
     """Longest edge over thickness (m,) of the elements' straight tetrahedra, 1.22 of a regular one."""
     tets = mesh.cells[:, :4]
     corner = mesh.nodes[tets]
-    sides = [(corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]) for a, b, c in FACES]
+    sides = [(corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]) for a, b, c in CORNER_FACES]
     largest = np.max([np.linalg.norm(np.cross(*two), axis=1) / 2 for two in sides], axis=0)
     return longest_edges(mesh.nodes, tets) * largest / (3 * signed_volumes(mesh.nodes, tets))
 

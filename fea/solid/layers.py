@@ -21,7 +21,7 @@ from flexspline.geometry.shaft_shape import Shaft
 
 RING_STEP = np.radians(20)
 """Largest edge about the axis: parabolas of 20° lose 2e-5 of a circle's area."""
-CORE = 0.4
+LAYER_CORE = 0.4
 """Of the least radius at which something happens: within it, a plan that reaches the axis is a fan."""
 LAYERS_PER_FAR = 1.15
 """Layers are at most the largest edge over this high: the tetrahedra of higher ones become eight each. On six
@@ -64,7 +64,7 @@ class Layers:
             least = min(least, self.part.bolts.radius - self.part.bolts.hole_radius)
         if self.part.keyway is not None:
             least = min(least, self.part.keyway.floor)
-        return [CORE * least, *rising[1:]]
+        return [LAYER_CORE * least, *rising[1:]]
 
     @property
     def solid(self) -> bool:

@@ -6,10 +6,11 @@ million unknowns, in docs/decisions.md.
 
 from __future__ import annotations
 
-import os
 from math import inf, sqrt
 from pathlib import Path
 from typing import Literal
+
+import psutil
 
 from flexspline.fea.address_space import free_address_space_bytes
 from flexspline.fea.pardiso import pardiso
@@ -104,19 +105,14 @@ def steps_of_factors(unknowns: int, entries: int) -> float:
 
 def available_bytes() -> float:
     """Memory that this process may still take: of the machine, its container, its own limit."""
-    return min(_of_machine(), container_free_bytes(), free_address_space_bytes())
+    return min(_machine_free_bytes(), container_free_bytes(), free_address_space_bytes())
 
 
-def _of_machine() -> float:
+def _machine_free_bytes() -> float:
+    """What the machine has without swapping; inf where it does not say (no /proc, say)."""
     try:
-        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
-            if line.startswith("MemAvailable:"):
-                return float(line.split()[1]) * 1024  # /proc/meminfo counts kB of 1024 bytes
+        return float(psutil.virtual_memory().available)
     except OSError:
-        pass
-    try:  # macOS: all there is, for want of what is free
-        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
         return inf
 
 

@@ -7,6 +7,7 @@ from math import inf
 
 import numpy as np
 
+from flexspline.fea.quadratic_triangle import lattice_values
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.stress import nodal_stress, von_mises
 from flexspline.fea.solid.unfold import folded
@@ -51,7 +52,7 @@ def stress_field(
 def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:
     from scipy.spatial import cKDTree
 
-    values = _facet_lattice()
+    values = lattice_values(LATTICE).T.copy()  # (q, 6)
     outer = mesh.facets[["symmetry" not in mesh.patches[p] for p in mesh.facet_patch]]
     surface = np.einsum("qi,kix->kqx", values, mesh.nodes[outer]).reshape(-1, 3)
     on_surface = np.einsum("qi,kiab->kqab", values, stress[outer]).reshape(-1, 3, 3)
@@ -71,14 +72,3 @@ def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:
         return float(found.max()) if len(found) else None
 
     return judged(float(mises[top]), (x, y, z), edges.exclusion_mm, largest)
-
-
-def _facet_lattice() -> np.ndarray:
-    """Six-node basis values (q, 6) on a lattice of the reference triangle."""
-    from skfem import ElementTriP2
-
-    i, j = np.meshgrid(np.arange(LATTICE + 1), np.arange(LATTICE + 1), indexing="ij")
-    inside = i + j <= LATTICE
-    where = np.stack([i[inside], j[inside]]) / LATTICE
-    element = ElementTriP2()
-    return np.stack([element.lbasis(where, k)[0] for k in range(6)], axis=1)

@@ -27,9 +27,9 @@ from flexspline.fea.axisymmetric.ruppert import (
 from flexspline.fea.solid.plan_curves import Curve
 from flexspline.fea.solid.plan_edges import PlanEdges, keys
 
-SMALLEST_ANGLE = np.radians(20)
+SMALLEST_PLAN_ANGLE = np.radians(20)
 """Of large triangles: what Ruppert's proof covers."""
-FLATTENED = 0.3
+FLATTENED_TRIANGLE = 0.3
 """Of a triangle's area in the map: one that keeps less with straight sides lies along too long an arc."""
 OFF_LINE = 0.12
 """Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
@@ -93,7 +93,7 @@ def _improvements(
     corner, sides = own.points[triangles], edge_lengths(own.points, triangles)
     radius = circumradii(sides, signed_areas(own.points, triangles))
     scale = np.exp(corner[:, :, 0].mean(axis=1))
-    poor = is_poor(sides, radius, SMALLEST_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
+    poor = is_poor(sides, radius, SMALLEST_PLAN_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
     if not poor.any():
         return np.empty((0, 2)), np.zeros(len(own.ends), bool)
     order = np.argsort(-radius[poor])
@@ -116,7 +116,7 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
     straight = np.exp(u)[:, None] * np.column_stack([np.cos(phi), np.sin(phi)])
     scale = np.exp(u[triangles].mean(axis=1)) ** 2
     area = signed_areas(own.points, triangles)
-    mine = triangles[signed_areas(straight, triangles) < FLATTENED * scale * area]
+    mine = triangles[signed_areas(straight, triangles) < FLATTENED_TRIANGLE * scale * area]
     longest = edge_lengths(own.points, mine).argmax(axis=1)
     rows = np.arange(len(mine))
     flat = keys(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)

@@ -10,13 +10,13 @@ from flexspline.fea.solid.errors import MeshQualityError
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element
 in ten thousand below it, with ten times the true stress at its nodes."""
-FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+CORNER_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 """Outward faces of a positively oriented tetrahedron; face i is opposite corner i."""
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
     """Faces (k, 3) that belong to one tetrahedron only, outward."""
-    faces = tets[:, FACES].reshape(-1, 3)
+    faces = tets[:, CORNER_FACES].reshape(-1, 3)
     _, first, count = np.unique(
         np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
     )

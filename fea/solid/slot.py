@@ -26,7 +26,7 @@ STEP_OF_EDGE = 0.5
 slot's corners and the patch edges hold alike shares of the error on the example's shaft."""
 STEP_GROWTH = 1.6
 """Of one step about the axis to the next, away from the slot's side."""
-LARGEST_STEP = radians(20)
+LARGEST_KEYED_STEP = radians(20)
 """Far from the slot, where the shaft is in plain torsion: 15° and 20° differ by 6e-5 of the example's K,
 and parabolas of 20° lose 2e-5 of a circle's area."""
 NEAR_RATIO, FAR_RATIO, GROWTH_RATIO = 0.3, 1.75, 1.6
@@ -39,7 +39,7 @@ BLOCK_EDGE_POINTS = 24
 
 
 @dataclass(frozen=True)
-class Block:
+class SlottedTube:
     """The slot and the plain tube that it is cut into; lengths [mm].
 
     Attributes
@@ -87,7 +87,7 @@ class Block:
         along = np.linspace(0, 1, BLOCK_EDGE_POINTS)
         places = np.vstack([s.at(along) for s in self.edges])
         edge = sqrt(grading.near * grading.far)
-        return Finer(LARGEST_STEP, tuple(map(tuple, places.tolist())), edge_mm=edge)
+        return Finer(LARGEST_KEYED_STEP, tuple(map(tuple, places.tolist())), edge_mm=edge)
 
     def outline(self, whole: Meridian) -> Meridian:
         """The outline with a vertex where each of the block's edges ends."""
@@ -112,7 +112,7 @@ class Block:
         left = sector - self.angle
         steps = [first]
         while sum(steps) < left:
-            steps.append(min(LARGEST_STEP, STEP_GROWTH * steps[-1]))
+            steps.append(min(LARGEST_KEYED_STEP, STEP_GROWTH * steps[-1]))
         beyond = np.cumsum(steps) * left / sum(steps)
         return np.concatenate(
             [np.arange(0, self.angle - SAME, first), [self.angle], self.angle + beyond]

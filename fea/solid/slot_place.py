@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import hypot
 
-from flexspline.fea.solid.slot import Block
+from flexspline.fea.solid.slot import SlottedTube
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
@@ -18,7 +18,7 @@ LEAST_FADING = 0.5
 """Of that length: where a step of the shaft leaves less, elements would be bent too far."""
 
 
-def block_of(part: Part, low: float) -> Block | None:
+def block_of(part: Part, low: float) -> SlottedTube | None:
     """The keyway of a shaft, if the mesh can be bent onto it; what lies below `low` [mm] is not bent.
 
     None without a keyway, where the slot leaves the last segment, reaches too near its outer wall, or
@@ -47,4 +47,4 @@ def block_of(part: Part, low: float) -> Block | None:
         or fading < LEAST_FADING * wanted
     ):
         return None
-    return Block(cut, inner, outer, fading)
+    return SlottedTube(cut, inner, outer, fading)

@@ -15,7 +15,7 @@ PROJECTION_ROUNDS = 40
 distance, so 40 reach rounding."""
 AGREED = 1e-8
 """[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
-FLATTENED = 0.1
+FLATTENED_TETRAHEDRON = 0.1
 """Share of its volume: a tetrahedron that keeps less is a sliver, whose curved copy can turn inside out."""
 MOST_PASSES = 10
 """Each takes back the nodes of what the one before flattened; a mesh that is not done then is refused."""
@@ -110,11 +110,11 @@ def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -
 def undo_inverted(
     raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray, passes: int = MOST_PASSES
 ) -> np.ndarray:
-    """Take back the moves of nodes whose tetrahedra they flattened (below `FLATTENED`)."""
+    """Take back the moves of nodes whose tetrahedra they flattened (below `FLATTENED_TETRAHEDRON`)."""
     before = signed_volumes(raw, tets)
     out = snapped.copy()
     for _ in range(passes):
-        bad = signed_volumes(out, tets) < FLATTENED * before
+        bad = signed_volumes(out, tets) < FLATTENED_TETRAHEDRON * before
         if not bad.any():
             return out
         nodes = np.unique(tets[bad])

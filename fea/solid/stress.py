@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.fea.nodal_average import Part, nodal_average
+from flexspline.fea.nodal_average import ElementValues, nodal_average
 from flexspline.fea.solid.elements import (
     NODES,
     basis_of,
@@ -45,7 +45,7 @@ def _averaged(curved: Any, mesh: TetMesh, u: np.ndarray, material: Elastic) -> n
     """`nodal_stress` on the mesh as scikit-fem has it."""
     at_nodes = NODES, np.ones(len(NODES)) / len(NODES)
 
-    def parts() -> Iterator[Part]:
+    def parts() -> Iterator[ElementValues]:
         for part in _parts(mesh.elements):
             basis, cells = basis_of(curved, part, at_nodes), mesh.cells[part]
             local = _stress(basis, u[cells], material)

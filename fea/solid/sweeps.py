@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexspline.fea.solid.column import HoledColumn, column_of
-from flexspline.fea.solid.slot import Block
+from flexspline.fea.solid.slot import SlottedTube
 from flexspline.fea.solid.slot_place import block_of
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
@@ -27,6 +27,6 @@ def half_holes(part: Part, sector_deg: float) -> int:
     return 0 if part.bolts is None else round(2 * part.bolts.count * sector_deg / 360)
 
 
-def bent_block(part: Part, column: HoledColumn | None) -> Block | None:
+def bent_block(part: Part, column: HoledColumn | None) -> SlottedTube | None:
     """The keyway onto which the mesh is bent, above the holes' column; None where it is not."""
     return block_of(part, 0.0 if column is None else column.high)

@@ -26,7 +26,7 @@ from flexspline.fea.solid.polar import cartesian, middles
 from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
-from flexspline.fea.solid.slot import Block
+from flexspline.fea.solid.slot import SlottedTube
 from flexspline.fea.solid.snap import snap_to_surfaces
 from flexspline.fea.solid.sweeps import bent_block, can_be_swept, goes_about_axis, half_holes
 from flexspline.fea.solid.swept_sizing import (
@@ -41,9 +41,9 @@ from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import part_surfaces
 
-LARGEST_STEP = radians(10)
+LARGEST_SWEPT_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
-Bend = Callable[[np.ndarray], np.ndarray]
+PolarMap = Callable[[np.ndarray], np.ndarray]
 """Nodes (n, 3) as (r, φ, z) of the revolved mesh to those of the part's."""
 
 
@@ -88,12 +88,12 @@ def swept_mesh(
 def _prisms(
     outline: Meridian,
     column: HoledColumn | None,
-    block: Block | None,
+    block: SlottedTube | None,
     wedge: float,
     copies: int,
     grading: Grading,
     finer: Finer | None,
-) -> tuple[np.ndarray, np.ndarray, Bend]:
+) -> tuple[np.ndarray, np.ndarray, PolarMap]:
     """Corners (n, 3) as (r, φ, z), tetrahedra (m, 4), positive, and how a keyway bends them.
 
     The sector is a wedge [rad] and its mirror images, `copies` in all.
@@ -106,7 +106,7 @@ def _prisms(
         first = triangulate(block.outline(own), block.edges)
         grading = block.grading(grading)
     rest = graded_mesh(first, critical, grading, finer if block is None else block.finer(grading))
-    step = LARGEST_STEP if finer is None else finer.step_rad
+    step = LARGEST_SWEPT_STEP if finer is None else finer.step_rad
     if column is None:
         if block is None:
             angles = np.linspace(0, wedge, ceil(wedge / step) + 1)
@@ -132,7 +132,7 @@ def _prisms(
         polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
     if copies > 1:
         polar, prisms = unrolled_copies(polar, prisms, wedge, copies)
-    bend: Bend = _unbent
+    bend: PolarMap = _unbent
     if block is not None:
         side = block.side(np.concatenate([mirrored(angles, wedge, k) for k in range(copies)]))
         prisms = prisms[~block.holds(polar[prisms].mean(axis=1), side)]
@@ -145,11 +145,11 @@ def _prisms(
 def _curved(
     part: Part,
     column: HoledColumn | None,
-    block: Block | None,
+    block: SlottedTube | None,
     sector_deg: float,
     polar: np.ndarray,
     tets: np.ndarray,
-    bend: Bend,
+    bend: PolarMap,
 ) -> TetMesh:
     """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
     corners = cartesian(bend(polar))
@@ -174,7 +174,7 @@ def _unbent(polar: np.ndarray) -> np.ndarray:
 
 
 def _sizes(
-    part: Part, sector_deg: float, column: HoledColumn | None, block: Block | None
+    part: Part, sector_deg: float, column: HoledColumn | None, block: SlottedTube | None
 ) -> dict[str, float]:
     """Volume and patch areas by Pappus' theorems, less holes, which start in `mount`, and slot."""
     share = sector_deg / 360

@@ -70,6 +70,11 @@ def whole_part(
     )
 
 
+def unloaded_part(mesh: TetMesh) -> WholePart:
+    """All 360° of a part that nothing moves."""
+    return whole_part(mesh, np.zeros_like(mesh.nodes), np.zeros(len(mesh.nodes)), "symmetric")
+
+
 def face_patches(mesh: TetMesh) -> np.ndarray:
     """(m, 4) patch index of every cell's faces, -1 where the face is inside the material."""
     size = len(mesh.nodes)

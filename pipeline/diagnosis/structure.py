@@ -58,9 +58,9 @@ class Trace:
 
 @dataclass(frozen=True)
 class Slip:
-    """`way_arcsec` that the output goes on in a load, and how many `times` what it springs there."""
+    """`slip_arcsec` that the output goes on in a load, and how many `times` what it springs there."""
 
-    way_arcsec: float
+    slip_arcsec: float
     times: float
 
 

@@ -39,6 +39,7 @@ def diagnose_with_stiffness(
     Raises
     ------
     DesignError : stiffnesses given beside the gear's curve.
+    StiffnessValueError : a stiffness given is no positive, finite number.
     MeasurementError : the file cannot be accepted.
     ComputationError : a stiffness that is needed was not found, or the gear has no equilibrium.
     """
@@ -46,9 +47,10 @@ def diagnose_with_stiffness(
         from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 
         refuse_given(*given)
+    pair = given_pair(*given)
     measurement = read_measurement(csv, counts_per_turn)  # refused before the long work, if bad
     stated = tuple(f"{name}{K:g}" for name, K in zip(names, given, strict=True) if K is not None)
-    used = given_pair(*given) or stiffness_pair(context(), *given)
+    used = pair or stiffness_pair(context(), *given)
     chain = None
     if gear:
         from flexspline.pipeline.gear_chain import chain_of

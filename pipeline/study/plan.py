@@ -10,8 +10,8 @@ from typing import Protocol
 import numpy as np
 
 from flexspline.pipeline.study.study import Study
+from flexspline.pipeline.study.trial_tables import Values
 
-Values = Mapping[str, float]
 ROOT_ROUNDING = 1e-9
 """Steps of an axis: 125 ** (1 / 3) is 4.999…, short by 1e-15, and no other root is as near."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.diagnosis.advice import why
@@ -15,9 +13,7 @@ from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import cause_title, magnitude_words, sure_words
 from flexspline.results.file_names import EXTENDED_MODEL
-from flexspline.results.records import heading
-
-Record = dict[str, Any]
+from flexspline.results.records import Record, heading
 
 
 def diagnosis_record(diagnosis: Diagnosis) -> Record:

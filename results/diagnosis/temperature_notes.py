@@ -21,8 +21,8 @@ def lag_notes(identified: Identification) -> list[str]:
     if lag.stages > 1:
         said += ", twice in a row"
     if lag.warmer_K:
-        way = "warmer" if lag.warmer_K > 0 else "colder"
-        said += f", and began {abs(lag.warmer_K):.2g} K {way} than the reading"
+        side = "warmer" if lag.warmer_K > 0 else "colder"
+        said += f", and began {abs(lag.warmer_K):.2g} K {side} than the reading"
     if not lag.shown:
         said += "; without a lag this record is explained nearly as well"
     return [said]

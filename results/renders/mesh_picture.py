@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.fea.solid.whole import WholePart, whole_part
+from flexspline.fea.solid.whole import WholePart, unloaded_part
 from flexspline.fea.types import TetMesh
 from flexspline.results.numbers import grouped
 from flexspline.results.renders.picture_elements import (
@@ -33,7 +33,7 @@ _SECTION = "#f3f5f6"
 
 def write_mesh_picture(path: Path, mesh: TetMesh, part_name: str) -> None:
     """Write the PNG of one part; `part_name` opens the title ("Flexspline", "Output shaft")."""
-    whole = whole_part(mesh, np.zeros_like(mesh.nodes), np.zeros(len(mesh.nodes)), "symmetric")
+    whole = unloaded_part(mesh)
     cut = opening(mesh.sector_deg)
     colour_of = {name: _PATCHES[name][0] for name in _PATCHES if name in mesh.patches}
     count = grouped(len(mesh.cells), 0)

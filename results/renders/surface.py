@@ -13,7 +13,7 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 if TYPE_CHECKING:
     import pyvista as pv
 
-_FOUR = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+FOUR_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """A six-node facet (corners, then middles of 01, 12, 20) as four flat triangles."""
 CREASE_DEG = 30.0
 """Facets that turn by more than this meet in a drawn edge."""
@@ -80,7 +80,9 @@ def surface(points: np.ndarray, facets: np.ndarray, curved: bool = True) -> pv.P
 
     facets = facets if curved else facets[:, :3]
     used, local = np.unique(facets, return_inverse=True)
-    triangles = local.reshape(facets.shape)[:, _FOUR if curved else [0, 1, 2]].reshape(-1, 3)
+    triangles = local.reshape(facets.shape)[:, FOUR_TRIANGLES if curved else [0, 1, 2]].reshape(
+        -1, 3
+    )
     mesh = pv.PolyData.from_regular_faces(points[used], triangles.astype(int))
     mesh.point_data["node"] = used
     return mesh.compute_normals(

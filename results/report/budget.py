@@ -13,8 +13,8 @@ from flexspline.results.report.document import (
     Block,
     Column,
     Formula,
+    FormulaNode,
     Heading,
-    Node,
     Paragraph,
     Picture,
     Table,
@@ -24,10 +24,10 @@ from flexspline.results.report.spans import Words, plain, symbol
 
 EXTENDED = "extended.total_arcsec"
 """The sum's key in `result.json`."""
-_DELTA: Node = ("symbol", "Δ_bl")
-_SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
-_FLEXSPLINE: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
-_PLAY: Node = (
+_DELTA: FormulaNode = ("symbol", "Δ_bl")
+_SHAFT: FormulaNode = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
+_FLEXSPLINE: FormulaNode = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
+_PLAY: FormulaNode = (
     "over",
     [("text", "2"), ("text", "("), ("symbol", "j_bn0"), ("text", "+"), ("symbol", "j′"), ("text", ")")],
     [("symbol", "m"), ("symbol", "z_1"), ("text", "cos"), ("symbol", "α")],
@@ -62,7 +62,7 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         + symbol("j_bn0")
         + plain(" and bearing play leave free:")
     )
-    plus: Node = ("text", "+")
+    plus: FormulaNode = ("text", "+")
     yield Formula(
         (_DELTA, ("text", "="), _SHAFT, plus, _FLEXSPLINE, plus, _PLAY),
         "Δ_bl = 2 T_L / K_e + 2 T_L / K_b + 2 (j_bn0 + j′) / (m z_1 cos α)",

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.spans import Text
 
-Node = Sequence[Any]
+FormulaNode = Sequence[Any]
 """Of a formula: ("symbol", letter), ("text", letters), ("over", above, below) of lists of nodes."""
 
 
@@ -90,7 +90,7 @@ class Table:
 class Formula:
     """A displayed formula."""
 
-    nodes: tuple[Node, ...]
+    nodes: tuple[FormulaNode, ...]
     spoken: str
     """The same in words, for screen readers."""
 

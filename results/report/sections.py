@@ -226,9 +226,9 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         "“energy – work” is the relative difference of the stiffness from strain energy and from the "
         f"work of torque or loads; {tables.UNCHECKED} where a check was not made.",
     )  # fmt: skip
-    for way in dict.fromkeys((s["method"], s["kind"]) for s in solves):
-        alike = [s for s in solves if (s["method"], s["kind"]) == way]
-        yield Paragraph(_bounds_of(content, way[0], alike))
+    for method, kind in dict.fromkeys((s["method"], s["kind"]) for s in solves):
+        alike = [s for s in solves if (s["method"], s["kind"]) == (method, kind)]
+        yield Paragraph(_bounds_of(content, method, alike))
     if not any(len(s.levels) > 1 for s in (content.K_b, content.K_e)):
         yield Paragraph(
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
@@ -247,7 +247,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         )
 
 
-def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> Words:
+def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:
     said = (
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )

@@ -16,12 +16,12 @@ from flexspline.results.report.content import ReportContent
 from flexspline.results.report.dimensions import ratio, weights
 from flexspline.results.sentences import capital
 
-Row = dict[str, str]
+PrintedRow = dict[str, str]
 UNCHECKED = "–"
 """Stands where a check was not made."""
 
 
-def answers(content: ReportContent) -> list[Row]:
+def answers(content: ReportContent) -> list[PrintedRow]:
     """Every answer with its symbol, unit and bounds."""
     rows = [_backlash_row(content)]
     series = quantity("K_series_Nm_per_rad")
@@ -46,7 +46,7 @@ def answers(content: ReportContent) -> list[Row]:
     return rows + _stress_rows(content)
 
 
-def budget(content: ReportContent) -> list[Row]:
+def budget(content: ReportContent) -> list[PrintedRow]:
     """The four terms and their sum: value and share."""
     b = content.backlash
     rows = []
@@ -57,7 +57,7 @@ def budget(content: ReportContent) -> list[Row]:
     return rows
 
 
-def solves(content: ReportContent) -> list[Row]:
+def solves(content: ReportContent) -> list[PrintedRow]:
     """How each stiffness was solved: model, piece, size, checks."""
     rows = []
     for name, s in content.stiffnesses.items():
@@ -123,14 +123,14 @@ def design_facts(design: Design) -> list[list[str]]:
     ]
 
 
-def _backlash_row(content: ReportContent) -> Row:
+def _backlash_row(content: ReportContent) -> PrintedRow:
     entry = quantity("backlash_arcsec.total")
     return _row(entry, content.backlash.total_arcsec, spread_text(content.backlash)) | {
         "note": f"between −T_L and +T_L, T_L = {content.design.load.torque_Nm:g} N·m"
     }
 
 
-def _stress_rows(content: ReportContent) -> list[Row]:
+def _stress_rows(content: ReportContent) -> list[PrintedRow]:
     rows = []
     wave, torque = quantity("wave_generator_peak_mises_MPa"), quantity("torque_peak_mises_MPa")
     for entry, name, peak in (
@@ -156,7 +156,7 @@ def _stress_rows(content: ReportContent) -> list[Row]:
     return rows
 
 
-def _row(entry: Quantity, value: float, bounds: str) -> Row:
+def _row(entry: Quantity, value: float, bounds: str) -> PrintedRow:
     return {
         "name": entry.name,
         "symbol": entry.symbol,

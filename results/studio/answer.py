@@ -35,11 +35,11 @@ LINE_POINTS = 25
 """Of the torque–angle line: it is straight, its band bends."""
 ESTIMATED = "≈\u2009"
 """Before bounds that are no theorems."""
-Found = Mapping[str, Any]
+FoundSoFar = Mapping[str, Any]
 Message = dict[str, Any]
 
 
-def message(design: Design, found: Found) -> Message:
+def message(design: Design, found: FoundSoFar) -> Message:
     """All that can be said with the figures found so far; `found` by result.json key.
 
     Raises
@@ -104,7 +104,7 @@ def figure(key: str, value: float) -> Message:
     }  # fmt: skip
 
 
-def _stiffness(name: str, figures: Found) -> Message:
+def _stiffness(name: str, figures: FoundSoFar) -> Message:
     key, bounds = f"{name}_Nm_per_rad", f"{name}_bounds_Nm_per_rad"
     if key not in figures:
         return _waiting(key)
@@ -122,7 +122,7 @@ def _stiffness(name: str, figures: Found) -> Message:
     return row
 
 
-def _peak(name: str, figures: Found, design: Design) -> Message:
+def _peak(name: str, figures: FoundSoFar, design: Design) -> Message:
     key = f"{name}_mises_MPa"
     if key not in figures:
         return _waiting(key)
@@ -144,7 +144,7 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
     return row
 
 
-def _gear(found: Found) -> Message:
+def _gear(found: FoundSoFar) -> Message:
     """Figures, shares of the compliance, assumed keys of the design file; of the fast model the curve too."""
     shares = found["compliance_shares"].items()
     return {

@@ -14,7 +14,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from
-from flexspline.geometry.schema import Location, Node, dotted, key_words, node_at
+from flexspline.geometry.schema import Location, SchemaNode, dotted, key_words, node_at
 from flexspline.results.sentences import capital
 
 GROUPS: tuple[tuple[str, Location], ...] = (
@@ -104,7 +104,7 @@ def _after_dimensions(entry: Tables) -> int:
 
 
 def _entry(
-    location: Location, node: Node, value: Any, scale: float, usual: Mapping[str, float]
+    location: Location, node: SchemaNode, value: Any, scale: float, usual: Mapping[str, float]
 ) -> Tables | None:
     """One key: a number with its slider, or a choice; None for tables and for what has no choice."""
     words, unit = key_words(str(location[-1]))
@@ -131,7 +131,7 @@ def _entry(
 
 
 def slider(
-    node: Node, value: float | None, scale: float, whole: bool, key: str
+    node: SchemaNode, value: float | None, scale: float, whole: bool, key: str
 ) -> tuple[float, float, float]:
     """Range and step about a nominal value, within the schema's limits.
 

@@ -11,12 +11,12 @@ from flexspline.results.diagnosis.words import title_of
 from flexspline.results.numbers import figures_text
 from flexspline.results.sentences import capital
 from flexspline.results.studio.answer import message
-from flexspline.results.studio.jobs import Kind
+from flexspline.results.studio.jobs import JobKind
 
 Summary = dict[str, Any]
 
 
-def job_summary(kind: Kind, design: Design, printed: str) -> Summary:
+def job_summary(kind: JobKind, design: Design, printed: str) -> Summary:
     """From what the command printed with --json."""
     if kind == "step":
         return {}

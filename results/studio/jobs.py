@@ -20,7 +20,7 @@ from typing import Literal
 from flexspline.geometry.design import Design
 from flexspline.geometry.template import design_text
 
-Kind = Literal["solid", "report", "step", "diagnose"]
+JobKind = Literal["solid", "report", "step", "diagnose"]
 SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step",
           ".png": "image/png", ".toml": "application/toml", ".json": "application/json"}  # fmt: skip
 """What a tab may fetch of a job's folder, by ending."""
@@ -41,7 +41,7 @@ class StudioJob:
     folder : where it works, made by `run`.
     """
 
-    kind: Kind
+    kind: JobKind
     say: Callable[[str], Awaitable[None]]
     process: asyncio.subprocess.Process | None = None
     folder: tempfile.TemporaryDirectory[str] | None = None
@@ -149,7 +149,7 @@ class Done:
 
 
 _CLI = "flexspline.results.entry"
-_COMMANDS: dict[Kind, tuple[str, ...]] = {
+_COMMANDS: dict[JobKind, tuple[str, ...]] = {
     "solid": (_CLI, "stiffness", _DESIGN, "--out", _OUT, "--json"),
     "report": (_CLI, "run", _DESIGN, "--out", _OUT, "--json"),
     "step": ("flexspline.results.studio.step", _DESIGN, _OUT),

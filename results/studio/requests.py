@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from flexspline.pipeline.stress_limits import StressCase
-from flexspline.results.studio.jobs import Kind
+from flexspline.results.studio.jobs import JobKind
 
 _LARGEST_EXACT = 2**53
 """A browser counts no farther without rounding."""
@@ -30,7 +30,7 @@ class Start(_Request):
     """A job with a design."""
 
     do: Literal["job"]
-    kind: Kind
+    kind: JobKind
     tables: dict[str, Any]
 
 
@@ -38,7 +38,7 @@ class Stop(_Request):
     """The end of a job, if there is one of its kind."""
 
     do: Literal["stop"]
-    kind: Kind
+    kind: JobKind
 
 
 Request = Want | Start | Stop

@@ -11,7 +11,7 @@ from aiohttp import web
 from flexspline.geometry.errors import DesignError, why_of
 from flexspline.results.studio.fields import received
 from flexspline.results.studio.job_summary import job_summary
-from flexspline.results.studio.jobs import Done, Kind, StudioJob
+from flexspline.results.studio.jobs import Done, JobKind, StudioJob
 from flexspline.results.studio.requests import Start, Want, request_from
 from flexspline.results.studio.tab import Tab, Workers
 
@@ -23,8 +23,8 @@ class Session:
         self._socket = socket
         self.tab = Tab(workers, self._send)
         self.measured = b""
-        self._jobs: dict[Kind, StudioJob] = {}
-        self._tasks: dict[Kind, asyncio.Task[None]] = {}
+        self._jobs: dict[JobKind, StudioJob] = {}
+        self._tasks: dict[JobKind, asyncio.Task[None]] = {}
 
     async def open(self) -> None:
         self.tab.open()
@@ -62,7 +62,7 @@ class Session:
         job = next((job for k, job in self._jobs.items() if k == kind), None)
         return None if job is None else job.read(name)
 
-    def _start(self, kind: Kind, tables: dict[str, Any]) -> None:
+    def _start(self, kind: JobKind, tables: dict[str, Any]) -> None:
         old, before = self._jobs.get(kind), self._tasks.get(kind)
 
         async def say(line: str) -> None:

@@ -8,10 +8,9 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.geometry.outline import SAME
 from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.picture_elements import magnification
+from flexspline.results.renders.surface import FOUR_TRIANGLES
 from flexspline.results.studio.simplify import simplified
 
-_PIECES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-"""A triangle with edge middles (corners 0 to 2, middles of 01, 12, 02) as four straight ones."""
 PLACE = 2e-4
 """Of the part's size: a fifth of a pixel where it fills a thousand."""
 COLOUR = 0.01
@@ -28,7 +27,7 @@ def field_message(view: str, field: RevolvedField) -> bytes:
     around.append(field.mises(np.pi / (2 * field.n)) ** 2 if field.n else 0 * around[0])
     largest = float(np.abs(field.displacement).max())
     size = 2 * float(field.places[:, 0].max())
-    cells = field.triangles[:, _PIECES].reshape(-1, 3)
+    cells = field.triangles[:, FOUR_TRIANGLES].reshape(-1, 3)
     head = {
         "is": "field",
         "view": view,

@@ -26,8 +26,8 @@ from flexspline.results.study.why import unfollowed
 PRELOAD = "preload_tooth_force_N"
 LATE_SHARE = 0.25
 """Of a search's designs, the last: what words call a quarter."""
-MOVED = 0.005
-"""Of the best figure: half of what bounds of K are wide in a study (STUDY_LOBE_TOLERANCE)."""
+MOVED = STUDY_LOBE_TOLERANCE / 2
+"""Of the best figure: half of what bounds of K are wide in a study."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 

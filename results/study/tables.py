@@ -11,10 +11,10 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
 from flexspline.results.study.labels import published
 
-Table = dict[str, list[Any]]
+StudyColumns = dict[str, list[Any]]
 
 
-def table_of(result: StudyResult) -> Table:
+def table_of(result: StudyResult) -> StudyColumns:
     """Columns by name: slot, varied keys, figures, whether the constraints hold, reason, seconds.
 
     A figure that a design does not have is None.
@@ -24,7 +24,7 @@ def table_of(result: StudyResult) -> Table:
     said = [published(r.outcome.figures) for r in rows]
     figures = list(dict.fromkeys(k for row in said for k in row))
     feasible = {r.slot for r in result.feasible}
-    table: Table = {"design": [r.slot for r in rows]}
+    table: StudyColumns = {"design": [r.slot for r in rows]}
     table |= {k: [r.values[k] for r in rows] for k in keys}
     table |= {k: [row.get(k) for row in said] for k in figures}
     table["feasible"] = [r.slot in feasible for r in rows]
@@ -33,7 +33,7 @@ def table_of(result: StudyResult) -> Table:
     return table
 
 
-def write_csv(path: Path, table: Table) -> None:
+def write_csv(path: Path, table: StudyColumns) -> None:
     """Comma-separated, one header line, all digits of every number."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
@@ -45,7 +45,7 @@ def write_csv(path: Path, table: Table) -> None:
     write_bytes(path, out.getvalue().encode())
 
 
-def write_parquet(path: Path, table: Table) -> bool:
+def write_parquet(path: Path, table: StudyColumns) -> bool:
     """The same columns, typed; False, and nothing written, where pyarrow is not installed."""
     try:
         import pyarrow as pa

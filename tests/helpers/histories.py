@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
@@ -50,6 +50,6 @@ def joined(parts: list[History]) -> History:
 
 def shape_of(cause_id: str, history: History | None = None, /, **wanted: float) -> dict[str, float]:
     """The first shape that a cause tries with these parameters, or, where none has, given them."""
-    shapes = known_causes()[cause_id].shapes(Rig(PREDICTION, history or sweep()))
+    shapes = known_causes()[cause_id].shapes(FitContext(PREDICTION, history or sweep()))
     alike = [s for s in shapes if all(s.get(k) == v for k, v in wanted.items())]
     return {**(alike or shapes)[0], **wanted}

@@ -65,7 +65,7 @@ def test_a_first_mesh_of_its_own_may_be_coarser(
 ) -> None:
     part = model(folder)
     usual = first_elements(part, supported=False)
-    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
+    monkeypatch.setattr(solid_lobes, "MOST_LOBE_ELEMENTS", usual - 1)
     assert first_elements(part, supported=False) < usual
 
 
@@ -74,7 +74,7 @@ def test_a_coarser_mesh_is_made_only_where_it_promises_much_less_than_is_known(
 ) -> None:
     part = model(folder)
     usual = first_elements(part, supported=False)
-    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
+    monkeypatch.setattr(solid_lobes, "MOST_LOBE_ELEMENTS", usual - 1)
     # 1 % asked; on steps 1/0.7 times as long the fourth power is 4.2 times as large
     expected = promised(0.01, solid_lobes.COARSER_MESH)
     assert 0.02 < expected < 0.03
@@ -89,7 +89,7 @@ def test_no_mesh_is_solved_that_promises_no_better_bounds(
     supported: bool, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     part = model(folder)
-    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", 1)
+    monkeypatch.setattr(solid_lobes, "MOST_LOBE_ELEMENTS", 1)
     monkeypatch.setattr(solid_lobes, "USUAL_OVER_TORSION", 1e3)
     with pytest.raises(NoBetterMeshError) as caught:
         solid_lobes.solid_lobes(part, supported, known=1e-4)
@@ -101,7 +101,7 @@ def test_the_enclosure_then_answers_and_says_why(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     part = model(folder)
-    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", 1)
+    monkeypatch.setattr(solid_lobes, "MOST_LOBE_ELEMENTS", 1)
     monkeypatch.setattr(solid_lobes, "USUAL_OF_FREE", 1.0)
     found = rim_stiffness(part, "lobes_unsupported")
     known = enclosure_of(part, CASES["lobes_unsupported"].revolved)

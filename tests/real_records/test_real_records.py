@@ -57,7 +57,7 @@ def test_a_friction_damper_slips_and_no_cause_is_named(tmp_path: Path) -> None:
     slip = slip_of(sweep.history, sweep.angle_arcsec)
     assert slip is not None
     # the peak-to-peak way in seven cycles of growing and falling amplitude: at most 77 mm
-    assert 20 / ARM_MM < slip.way_arcsec / 206_265 < 77 / ARM_MM
+    assert 20 / ARM_MM < slip.slip_arcsec / 206_265 < 77 / ARM_MM
 
 
 JOINT = rows_of(HERE / "slotboom-joint-spc1.csv")

@@ -17,7 +17,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes
+from flexspline.pipeline.solid_lobes import MOST_LOBE_ELEMENTS, solid_lobes
 
 TOLERANCE = 0.005
 """The design files' default, and what the solid model is asked for."""
@@ -45,7 +45,7 @@ def test_the_free_rim_meets_its_tolerance_and_is_right(file: str, tmp_path: Path
     assert found.half_width <= TOLERANCE
     assert not found.shortfall
     assert not found.guaranteed
-    assert found.levels[-1].elements <= MOST_ELEMENTS
+    assert found.levels[-1].elements <= MOST_LOBE_ELEMENTS
     # holes never make a part stiffer, and here they hardly soften it
     assert found.lower_Nm_per_rad <= whole.upper_Nm_per_rad
     assert found.upper_Nm_per_rad >= (1 - HOLES) * whole.lower_Nm_per_rad

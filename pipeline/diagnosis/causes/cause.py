@@ -21,7 +21,7 @@ Effect = Literal["angle", "gap", "compliance"]
 
 
 @dataclass(frozen=True)
-class Rig:
+class FitContext:
     """The prediction, and what the record spans: fixes grids of shapes and the size of effects.
 
     `compliance` [arcsec per N·m] and `gap_arcsec` are what was measured, all linear terms together;
@@ -133,7 +133,7 @@ class Cause(ABC):
         return self.title
 
     @abstractmethod
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         """Shapes worth trying on a rig's record; none where it lacks the channel."""
 
     def log_share(self, shape: Shape, count: int) -> float:
@@ -144,7 +144,7 @@ class Cause(ABC):
         """Whether an element of this shape is all there is of the cause: no second one stands beside it."""
         return False
 
-    def plausible(self, elements: Sequence[Element], rig: Rig) -> bool:
+    def plausible(self, elements: Sequence[Element], rig: FitContext) -> bool:
         """Whether a real gear may have these on a record: asked of what would stand in for another cause."""
         return True
 
@@ -172,7 +172,7 @@ class Cause(ABC):
         """Columns of several shapes at once."""
         return [self.columns(shape, history) for shape in shapes]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         """Prior standard deviation of an amplitude: the size that such effects have in real gears.
 
         Shares of the predicted twist or angle, by judgement; they need not be near. All of them halved
@@ -181,7 +181,7 @@ class Cause(ABC):
         """
         return self.spread_share * rig.scale_arcsec
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """The magnitude (docs/contract.md) of all elements together, in `unit`.
 
         Left out, it is the sum of their first amplitudes.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 CLEARANCE = "clearance_offset"
@@ -25,15 +25,15 @@ class ClearanceOffset(Cause):
     vary = "temperature_C"
     reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         return [{}]
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return history.sign[:, None] / 2
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         """About the gap itself, whatever the torque."""
         return rig.prediction.gap_arcsec + rig.prediction.gap_std_arcsec or rig.scale_arcsec
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return rig.gap_arcsec - rig.prediction.gap_arcsec

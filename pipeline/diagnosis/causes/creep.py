@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
@@ -71,7 +71,7 @@ class Creep(Cause):
     shows_over = "time_s"
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         hold = hold_s(rig.history)
         ramp = ramp_s(rig.history)
         if rig.duration_s <= 0 or hold < SHORTEST_HOLD * ramp or hold == 0:
@@ -118,10 +118,10 @@ class Creep(Cause):
         tau, weight = self._kelvin(shape)
         return (lags(by_known_ways(history), history, tau) @ weight)[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.prediction.compliance
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""
         grown = 0.0
         for e in elements:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
@@ -40,7 +40,7 @@ class DirectionAsymmetry(Cause):
     """One and two deviations cover 75 and 96 % of 28 sizes."""
     reveals = "the same sweep with the gear turned round on the rig, to exclude the torque cell"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         return [
             {"exponent": n, "rounding_Nm": r * rig.torque_Nm, "largest_torque_Nm": rig.torque_Nm}
             for n, r in STARTS
@@ -61,10 +61,10 @@ class DirectionAsymmetry(Cause):
         x = _share(by_known_ways(history) / largest, shape["rounding_Nm"] / largest)
         return (largest * x ** shape["exponent"])[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.prediction.compliance
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """(K₊ − K₋) over their mean: −2a/c for chord compliances c ± a, exactly."""
         return -200 * sum(e.amplitudes[0] for e in elements) / rig.compliance
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
+from flexspline.pipeline.diagnosis.causes.closed_loop import MIDDLE_ROW, loop_widths
 from flexspline.pipeline.diagnosis.causes.micro_slip import (
     LEAST_POWER,
     MOST_POWER,
@@ -44,8 +45,6 @@ LEAST_GROWTH, MOST_GROWTH = 0.5, 3.0
 """Of the power of |T| by which what is `loaded` = GROWING grows: 1 is a friction coefficient."""
 MOST_BENT = 2.0
 """Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
-LOOP_ROWS = 201
-"""Of a half loop; odd, so that a row lies at T = 0, where the width is read."""
 DEADBAND = 0.001
 """Reversals of torque below this share of the largest (or twice its noise) are noise."""
 VARIANTS = (
@@ -90,7 +89,7 @@ class FrictionHysteresis(Cause):
     reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
     searched_apart = ({AHEAD: 30.0, "deadband_Nm": 0.0},)
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         largest = rig.torque_Nm
         deadband = max(DEADBAND * largest, CLEARED * deadband_Nm(rig.history))
         found: list[Shape] = []
@@ -214,23 +213,24 @@ class FrictionHysteresis(Cause):
             return history
         return turning_like(history, replace(history, torque_Nm=history.torque_Nm - carried))
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Full width at T = 0 of the closed loop at the largest amplitude.
 
         Of torque carried ahead of the teeth it is what elasticity makes of it.
         """
-        return float(self._widths(elements, rig)[LOOP_ROWS // 2])
+        return float(self._widths(elements, rig)[MIDDLE_ROW])
 
-    def widest_arcsec(self, elements: Sequence[Element], rig: Rig) -> float:
+    def widest_arcsec(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Full width of that loop where it is widest: friction that grows with torque has none at T = 0."""
         return float(self._widths(elements, rig).max())
 
-    def _widths(self, elements: Sequence[Element], rig: Rig) -> np.ndarray:
+    def _widths(self, elements: Sequence[Element], rig: FitContext) -> np.ndarray:
         """(LOOP_ROWS,) width of the closed loop from −T to T."""
         largest = rig.torque_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
-        up = np.linspace(-largest, largest, LOOP_ROWS)
-        loop = np.concatenate([up, up[::-1], up, up[::-1]])
-        teeth = self.at_teeth(elements, History.course(loop))
-        angle = rig.compliance * (teeth.torque_Nm - loop) + self.angle_arcsec(elements, teeth)
-        rising, falling = angle[2 * LOOP_ROWS : 3 * LOOP_ROWS], angle[3 * LOOP_ROWS :]
-        return falling[::-1] - rising
+
+        def angle(course: History) -> np.ndarray:
+            teeth = self.at_teeth(elements, course)
+            twist = rig.compliance * (teeth.torque_Nm - course.torque_Nm)
+            return twist + self.angle_arcsec(elements, teeth)
+
+        return loop_widths(angle, largest)

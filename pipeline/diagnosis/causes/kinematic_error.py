@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.periodic import (
     PeriodicShapes,
     harmonic,
@@ -18,7 +18,7 @@ KINEMATIC = "kinematic_error"
 """This cause's id."""
 
 
-class KinematicError(PeriodicShapes, Cause):
+class PeriodicPositionDeviation(PeriodicShapes, Cause):
     """Angle Σ a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
 
     id = KINEMATIC
@@ -31,5 +31,5 @@ class KinematicError(PeriodicShapes, Cause):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history)
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return largest_amplitude(elements)

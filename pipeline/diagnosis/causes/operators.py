@@ -149,11 +149,11 @@ def rising(history: History, width_Nm: float) -> np.ndarray:
     out = np.zeros(len(moved))
     for rows in history.unit_slices:
         step = np.sign(np.diff(moved[rows], prepend=moved[rows[0]]))
-        out[rows] = last_way(step)
+        out[rows] = last_direction(step)
     return out
 
 
-def last_way(step: np.ndarray) -> np.ndarray:
+def last_direction(step: np.ndarray) -> np.ndarray:
     """(n,) the last of the steps that was not 0, so far; 0 before the first."""
     last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
     return np.asarray(step[last])

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
@@ -29,12 +29,12 @@ class PeriodicShapes:
     vary: ClassVar[str] = "input_angle_deg"
     shows_over: ClassVar[str] = "input_angle_deg"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         """Sets of harmonics, where the input angle was recorded."""
         return harmonic_shapes(rig)
 
 
-def harmonic_shapes(rig: Rig) -> list[Shape]:
+def harmonic_shapes(rig: FitContext) -> list[Shape]:
     """Sets of harmonics, where the input angle was recorded.
 
     At positions that are multiples of a harmonic's period it is the same everywhere; such a harmonic is

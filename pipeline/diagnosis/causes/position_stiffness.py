@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.periodic import (
     PeriodicShapes,
     harmonic,
@@ -35,8 +35,8 @@ class PositionStiffness(PeriodicShapes, Cause):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history) * history.torque_Nm[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.prediction.compliance
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return 100 * largest_amplitude(elements) / rig.compliance

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
@@ -51,7 +51,7 @@ class RateDependence(Cause):
     vary = "torque_rate"
     reveals = "the same sweep ten times slower and ten times faster"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         ramp = ramp_s(rig.history)
         if ramp <= 0:
             return []
@@ -95,10 +95,10 @@ class RateDependence(Cause):
         torque = steadied(less_jitter(history), shape["deadband_Nm"])
         return (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.scale_arcsec / shape["rate_Nm_per_s"]
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """By least squares over the rates that the record ran at."""
         return sum(e.amplitudes[0] * self._per_rate(e.shape, rig.history) for e in elements)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 DRIFT = "sensor_drift"
@@ -43,7 +43,7 @@ class SensorDrift(Cause):
     shows_over = "time_s"
     reveals = "the same torque held, or returned to, over hours with the wave generator untouched"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         if rig.duration_s <= 0:
             return []
         d = rig.duration_s
@@ -71,5 +71,5 @@ class SensorDrift(Cause):
             grown = (t / shape["duration_s"]) ** shape["exponent"]
         return grown[:, None]
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return sum(e.amplitudes[0] for e in elements) / (rig.duration_s / SECONDS_PER_HOUR)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 SERIES = "series_compliance"
@@ -33,14 +33,14 @@ class SeriesCompliance(Cause):
     def title_at(self, magnitude: float) -> str:
         return self.title if magnitude >= 0 else STIFFER
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         return [{}]
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return history.torque_Nm[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.prediction.compliance
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return 100 * (rig.compliance / rig.prediction.compliance - 1)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import wrightomega
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
+from flexspline.pipeline.diagnosis.causes.operators import last_direction, steadied
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
@@ -30,7 +30,7 @@ def _held_still(history: History) -> History:
     return turning_like(history, replace(history, torque_Nm=history.memo[key]))
 
 
-WAY, STRAIGHT = 5, 0.02
+ROWS_BESIDE_TURN, STRAIGHT_BESIDE_TURN = 5, 0.02
 """Rows of a way on one side of a turn; of the torque along it, its rms off a line beyond the noise. From the
 top of a sine on it is three times that."""
 CLEAR = 4.0
@@ -64,8 +64,8 @@ def carried_share(
     for rows in history.unit_slices:
         moved = np.r_[0.0, torque[rows]]
         step = np.sign(np.diff(moved))
-        way = last_way(step)
-        starts = np.flatnonzero(np.diff(way, prepend=np.nan) != 0)
+        side = last_direction(step)
+        starts = np.flatnonzero(np.diff(side, prepend=np.nan) != 0)
         time = None if history.time_s is None else history.time_s[rows]
         left, turn = 1.0, 0.0
         share = np.zeros(len(rows))
@@ -73,11 +73,11 @@ def carried_share(
             if a > 0:
                 where = _turned_at(history.torque_Nm[rows], time, int(a), deadband_Nm)
                 before, (turn, earlier) = turn, where or (float(moved[a]), False)
-                y = float(to_come(left, np.abs(np.array(turn - before)))) if way[a - 1] else 1.0
-                left = max(1 - way[a] * way[a - 1] * (1 - y), ABOVE_ZERO)
+                y = float(to_come(left, np.abs(np.array(turn - before)))) if side[a - 1] else 1.0
+                left = max(1 - side[a] * side[a - 1] * (1 - y), ABOVE_ZERO)
                 a -= earlier
-            if way[b - 1] != 0:
-                share[a:b] = way[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))
+            if side[b - 1] != 0:
+                share[a:b] = side[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))
         out[rows] = share
     return out
 
@@ -90,17 +90,17 @@ def _turned_at(
     Row a − 1 may lie on either side: the straight ways through the rows before it, and from a on, meet at the
     turn. None where the ways are short against the noise, or bent, or meet elsewhere: then a − 1 is the turn.
     """
-    if time is None or a < WAY + 1 or a + WAY > len(torque):
+    if time is None or a < ROWS_BESIDE_TURN + 1 or a + ROWS_BESIDE_TURN > len(torque):
         return None
     last, lines = a - 2, []
-    for rows in (np.arange(a - 1 - WAY, a - 1), np.arange(a, a + WAY)):
+    for rows in (np.arange(a - 1 - ROWS_BESIDE_TURN, a - 1), np.arange(a, a + ROWS_BESIDE_TURN)):
         t = time[rows] - time[last]
         if np.diff(t).min() <= 0:
             return None
         slope, level = np.polyfit(t, torque[rows], 1)
         span = abs(torque[rows[-1]] - torque[rows[0]])
         off = rms(torque[rows] - level - slope * t)
-        if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT * span:
+        if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT_BESIDE_TURN * span:
             return None
         lines.append((slope, level))
     (before, level), (after, later) = lines

@@ -27,23 +27,23 @@ def square_loops(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
     if not shapes:
         return []
     deadband = shapes[0]["deadband_Nm"]
-    way = _from_the_turn(history, rising(history, deadband), deadband)
+    direction = _from_the_turn(history, rising(history, deadband), deadband)
     chord = history.torque_Nm / shapes[0]["largest_torque_Nm"]
-    return [((chord if not s["held"] else 0.0) - way)[:, None] for s in shapes]
+    return [((chord if not s["held"] else 0.0) - direction)[:, None] for s in shapes]
 
 
-def _from_the_turn(history: History, way: np.ndarray, deadband_Nm: float) -> np.ndarray:
+def _from_the_turn(history: History, direction: np.ndarray, deadband_Nm: float) -> np.ndarray:
     """(n,) the direction from the turn on: it is seen only when torque has come back beyond its noise.
 
     The row of the largest or smallest torque itself is neither: the last one, where torque rests there.
     """
-    out, last_at_rest = way.copy(), np.arange(len(way))
+    out, last_at_rest = direction.copy(), np.arange(len(direction))
     for hold in still(history):
         last_at_rest[hold] = hold[-1]
     for rows in history.unit_slices:
         torque, begun = history.torque_Nm[rows], 0
-        for seen in np.flatnonzero(np.diff(way[rows])) + 1:
-            before = way[rows[seen - 1]]
+        for seen in np.flatnonzero(np.diff(direction[rows])) + 1:
+            before = direction[rows[seen - 1]]
             if before == 0:
                 continue
             height = before * torque[begun:seen]
@@ -53,6 +53,6 @@ def _from_the_turn(history: History, way: np.ndarray, deadband_Nm: float) -> np.
             if len(resting):
                 turn = min(int(np.searchsorted(rows, resting.max())), int(seen) - 1)
             out[rows[turn]] = 0.0
-            out[rows[turn + 1 : seen]] = way[rows[seen]]
+            out[rows[turn + 1 : seen]] = direction[rows[seen]]
             begun = turn
     return out

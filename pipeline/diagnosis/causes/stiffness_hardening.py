@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
@@ -72,7 +72,7 @@ class StiffnessHardening(Cause):
     vary = "torque_amplitude"
     reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]
         laws += [("power", p) for p in POWERS] + [("cubic", 1.0)]
         laws += [("rational", s) for s in SCALES]
@@ -112,15 +112,15 @@ class StiffnessHardening(Cause):
         x = np.abs(by_known_ways(history)) / shape["largest_torque_Nm"]
         return ((self._law(shape, x) - self._slope_held(shape) * x) * history.sign)[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.prediction.compliance * rig.torque_Nm
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Chord stiffness over 80–100 % of the largest torque / over 5–20 %."""
         low, high = ((b - a) / self._twist(elements, rig, a, b) for a, b in CHORDS)
         return high / low
 
-    def _twist(self, elements: Sequence[Element], rig: Rig, a: float, b: float) -> float:
+    def _twist(self, elements: Sequence[Element], rig: FitContext, a: float, b: float) -> float:
         torque = np.array([a, b]) * rig.torque_Nm
         angle = rig.compliance * torque + self.angle_arcsec(elements, History.course(torque))
         return float(angle[1] - angle[0])

@@ -7,7 +7,7 @@ from math import log
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
@@ -33,7 +33,7 @@ SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
 a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
 steady air: what it keeps of the last test or of the night."""
 
-STEADY_K = 2.0
+STEADY_AIR_K = 2.0
 """Air that changes by less in a record is steady: sensors differ by half of it, and no gap is seen to change
 with it."""
 MOST_PER_K = 10.0
@@ -57,7 +57,7 @@ class ThermalClearance(Cause):
     shows_as = "gap"
     reveals = "the same sweep at another temperature, the gear soaked, in the same cycle"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         if rig.history.temperature_C is None:
             return []
         longest = LAGS[-1] * rig.duration_s
@@ -68,8 +68,8 @@ class ThermalClearance(Cause):
         twice = [{**shape, STAGES: 2.0} for shape in lagging]
         most = max(SWING_SHARE * float(np.ptp(rig.history.temperature_C)), LEAST_MOST_K)
         off = [
-            {**shape, way: OFF_SHARE * most, MOST_OFF: most}
-            for shape in (*lagging[1:], *twice[1:]) for way in (WARMER, COLDER)
+            {**shape, side: OFF_SHARE * most, MOST_OFF: most}
+            for shape in (*lagging[1:], *twice[1:]) for side in (WARMER, COLDER)
         ]  # fmt: skip
         return [*plain, *lagging, *twice, *off]
 
@@ -83,11 +83,11 @@ class ThermalClearance(Cause):
         """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
         return MOST_OFF in shape
 
-    def plausible(self, elements: Sequence[Element], rig: Rig) -> bool:
+    def plausible(self, elements: Sequence[Element], rig: FitContext) -> bool:
         """A gap that grows for want of a temperature that no sensor saw, or none saw change, must be one that
         metals can make."""
         air = rig.history.temperature_C
-        steady = air is not None and float(np.ptp(air)) < STEADY_K
+        steady = air is not None and float(np.ptp(air)) < STEADY_AIR_K
         unseen = [e for e in elements if steady or MOST_OFF in e.shape]
         return all(abs(e.amplitudes[0]) <= MOST_PER_K for e in unseen)
 

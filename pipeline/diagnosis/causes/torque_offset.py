@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 OFFSET = "torque_offset"
@@ -30,13 +30,13 @@ class TorqueOffset(Cause):
     deviations cover 67 and 98 %."""
     reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         return []
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return np.zeros((len(history), 1))
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
+    def spread(self, shape: Shape, rig: FitContext) -> float:
         return self.spread_share * rig.torque_Nm
 
     def corrected(self, elements: Sequence[Element], history: History) -> History:

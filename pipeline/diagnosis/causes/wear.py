@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import within_cycle
 from flexspline.pipeline.diagnosis.measurement.history import History
 
@@ -42,7 +42,7 @@ class Wear(Cause):
     shows_as = "gap"
     reveals = "many more cycles at constant temperature"
 
-    def shapes(self, rig: Rig) -> list[Shape]:
+    def shapes(self, rig: FitContext) -> list[Shape]:
         if rig.cycles < 2:
             return []
         last = rig.cycles - 1
@@ -68,7 +68,7 @@ class Wear(Cause):
             cycle = cycle + within_cycle(history)
         return (self._growth(shape, cycle) * history.sign / 2)[:, None]
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+    def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Growth over the record, on the law's own clock, per cycle elapsed."""
         total = 0.0
         for e in elements:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import hypot
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import (
@@ -30,7 +30,7 @@ OVER_SIMULATION_NATS = RIVAL_EVIDENCE
 
 
 def decide(
-    hypotheses: Sequence[Hypothesis], rig: Rig, names: Sequence[str], prediction: Prediction
+    hypotheses: Sequence[Hypothesis], rig: FitContext, names: Sequence[str], prediction: Prediction
 ) -> Decision:
     """The decision on hypotheses of which some beats the simulation, or some unit is beyond the envelope."""
     best = next(h for h in hypotheses if h.causes)
@@ -78,7 +78,9 @@ def _channels(h: Hypothesis) -> set[str]:
     return {t.channel for t in h.best.terms}
 
 
-def _magnitude(best: UnitEvidence, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
+def _magnitude(
+    best: UnitEvidence, i: int, rig: FitContext, prediction: Prediction
+) -> tuple[float, float]:
     """The magnitude (docs/contract.md) and its standard deviation, to first order in the amplitude."""
     term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
     if term.cause == CLEARANCE:

@@ -26,7 +26,9 @@ p-value that a verdict turns on."""
 ENVELOPE_NODES = 200
 """`explanation` chooses among the nodes: over ± 6 σ they lie at most 6π/200 = 0.09 σ apart."""
 COVERED = 0.95
-"""Of the interval that is called the envelope."""
+"""Share of good units within the interval that is called the envelope."""
+COVERED_WORDS = f"{100 * COVERED:g} of 100"
+"""The same, as figures say it."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
@@ -57,7 +57,11 @@ def extended(
 
 
 def rivals_for_unit(
-    points: EndPoints, rig: Rig, prediction: Prediction, unit: UnitFinding, ids: Sequence[str]
+    points: EndPoints,
+    rig: FitContext,
+    prediction: Prediction,
+    unit: UnitFinding,
+    ids: Sequence[str],
 ) -> list[ExtendedModel]:
     """One model for each cause, its amplitude such that the unit's excess is explained by it alone.
 

@@ -10,7 +10,7 @@ from math import log
 import numpy as np
 from scipy.special import logsumexp
 
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, StiffnessHardening
@@ -27,11 +27,11 @@ from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 
 SUSPECTS = 5
 """Units that may have a cause of their own: those furthest from the prediction."""
-PAIR_NATS = -2.0
+CAUSE_PAIR_NATS = -2.0
 """Log prior odds of two causes against one, 1 to 7."""
-UNNAMED_NATS = -2.0
+UNNAMED_CURVE_NATS = -2.0
 """Log prior odds of a curve without a name against a cause, 1 to 7: at equal evidence a cause is named."""
-UNNAMED_SPREAD = StiffnessHardening.spread_share
+UNNAMED_CURVE_SPREAD = StiffnessHardening.spread_share
 """Prior standard deviation of that curve, of the predicted angle: as wide as soft wind-up's."""
 UNNAMED = "?torque_Nm"
 CONCAVE = {CLEARANCE, FRICTION, HARDENING}
@@ -57,7 +57,7 @@ class Hypothesis:
 
 
 def race(
-    points: EndPoints, rig: Rig, deviations: UnitDeviations, suspects: Sequence[int]
+    points: EndPoints, rig: FitContext, deviations: UnitDeviations, suspects: Sequence[int]
 ) -> list[Hypothesis]:
     """All hypotheses, the likeliest first; the null has no causes and score 0."""
     terms = end_point_regressors(points, rig)
@@ -71,7 +71,7 @@ def race(
                 UNNAMED,
                 "total",
                 curve,
-                UNNAMED_SPREAD * rig.scale_arcsec,
+                UNNAMED_CURVE_SPREAD * rig.scale_arcsec,
                 False,
                 Element({}, (1.0,)),
             )
@@ -81,7 +81,7 @@ def race(
     found = [Hypothesis((), None, 0.0, null.likelihood, null)]
     for cause in ids:
         mine = [t for t in terms if t.cause == cause]
-        odds = (UNNAMED_NATS if cause == UNNAMED else 0.0) - log(len(ids))
+        odds = (UNNAMED_CURVE_NATS if cause == UNNAMED else 0.0) - log(len(ids))
         found.append(_of(deviations, [(t,) for t in mine], None, odds, null))
         for u in suspects if deviations.units > 1 and cause != UNNAMED else ():
             rows = deviations.unit == u
@@ -91,7 +91,11 @@ def race(
         if {a, b} <= CONCAVE:
             continue
         pairs = [(s, t) for s in terms if s.cause == a for t in terms if t.cause == b]
-        odds = PAIR_NATS - log(len(ids) ** 2 / 2) + (UNNAMED_NATS if UNNAMED in (a, b) else 0.0)
+        odds = (
+            CAUSE_PAIR_NATS
+            - log(len(ids) ** 2 / 2)
+            + (UNNAMED_CURVE_NATS if UNNAMED in (a, b) else 0.0)
+        )
         found.append(_of(deviations, pairs, None, odds, null))
     return sorted(found, key=lambda h: -h.score)
 

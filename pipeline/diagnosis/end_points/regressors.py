@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.direction_asymmetry import ASYMMETRY
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, SINGLE
@@ -61,13 +61,13 @@ class EndPointRegressor:
         return (Element(self.element.shape, tuple(a * amplitude for a in self.element.amplitudes)),)
 
 
-def rig_of(points: EndPoints, prediction: Prediction) -> Rig:
+def rig_of(points: EndPoints, prediction: Prediction) -> FitContext:
     """A rig that goes straight to +T and to −T of every row."""
     largest = float(points.torque_Nm.max())
-    return Rig(prediction, History.course(np.array([largest, -largest])))
+    return FitContext(prediction, History.course(np.array([largest, -largest])))
 
 
-def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]:
+def end_point_regressors(points: EndPoints, rig: FitContext) -> list[EndPointRegressor]:
     """All hypotheses for a file's rows."""
     torque, largest = points.torque_Nm, rig.torque_Nm
     ones = np.ones_like(torque)

@@ -22,7 +22,7 @@ CORNER_SIGMAS = 4.5
 MET_WIDTHS = 3
 """Times the rows of a rate, through which the ways beside a corner are laid. With 1 % of noise and 1500 rows
 a cycle they meet within two rows of the corner; ways of a rate's own rows meet up to 17 away."""
-WAY = 4
+ROWS_BESIDE_CORNER = 4
 """Rows through which a straight way is laid on either side of a corner."""
 FEWEST_ROWS_OF_UNIT = 24
 """Of fewer no corner is told from a bend."""
@@ -53,7 +53,7 @@ def corners_of(history: History) -> list[Corner]:
         longest = max(width, int(cycle / LONGEST_PARTS))
         widths = sorted({min(w, longest) for w in (width, 2 * width, 4 * width)})
         change = _sudden(time, torque / fast, noise, widths, cycle)
-        most = max(MET_WIDTHS * width, WAY)
+        most = max(MET_WIDTHS * width, ROWS_BESIDE_CORNER)
         found += [
             Corner(unit, _met(time, torque, i, way), float(change[i]))
             for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), most)
@@ -115,7 +115,7 @@ def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
 
 def _met_at(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
     """Time [s] where the ways that part at row i meet, between its neighbours."""
-    if way < WAY or i < way or i + way >= len(time_s):
+    if way < ROWS_BESIDE_CORNER or i < way or i + way >= len(time_s):
         return float(time_s[i])
     t = time_s - time_s[i]
     ways = slice(i - way, i), slice(i + 1, i + way + 1)

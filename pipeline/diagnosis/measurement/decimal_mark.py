@@ -7,7 +7,11 @@ from collections.abc import Mapping, Sequence
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
-from flexspline.pipeline.diagnosis.measurement.number_text import Mark, evidence_of, number_of
+from flexspline.pipeline.diagnosis.measurement.number_text import (
+    DecimalMark,
+    evidence_of,
+    number_of,
+)
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 SHOWN = 40
@@ -16,7 +20,7 @@ SHOWN = 40
 
 def decimal_mark(
     grid: CellGrid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]
-) -> Mark:
+) -> DecimalMark:
     """The decimal mark of all the file's numbers.
 
     Raises
@@ -42,7 +46,7 @@ def decimal_mark(
     if grid.encoding == WORKBOOK:
         _refuse_text(grid, columns, cells)
     if points or commas:
-        mark: Mark = "." if points else ","
+        mark: DecimalMark = "." if points else ","
         other = "," if points else "."
         proven = {c.at for c, _ in points or commas}
         for column, row in either:

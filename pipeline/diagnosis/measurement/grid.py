@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.file_text import FileText, texts_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
-from flexspline.pipeline.diagnosis.measurement.head import Head, Split, head_of, paired
+from flexspline.pipeline.diagnosis.measurement.head import Head, LineSplitter, head_of, paired
 from flexspline.pipeline.diagnosis.measurement.head_again import heads_again
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
@@ -151,7 +151,7 @@ def _refuse_spaces(path: Path, head: Head, numbers: list[int]) -> None:
         raise MeasurementError(path, numbers[head.at], reason)
 
 
-def _splitter(lines: list[str]) -> Split:
+def _splitter(lines: list[str]) -> LineSplitter:
     def split(i: int, separator: str) -> list[str]:
         try:
             return [c.strip() for c in next(csv.reader([lines[i]], delimiter=separator))]

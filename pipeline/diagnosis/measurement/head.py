@@ -29,10 +29,10 @@ class Head:
     score: float
 
 
-Split = Callable[[int, str], list[str]]
+LineSplitter = Callable[[int, str], list[str]]
 
 
-def head_of(count: int, split: Split, separators: tuple[str, ...]) -> Head:
+def head_of(count: int, split: LineSplitter, separators: tuple[str, ...]) -> Head:
     """The line above the first row of numbers that names the most quantities; the first line for none.
 
     Of equals the last is taken: notes stand further up.

@@ -13,16 +13,16 @@ from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import rms
 
-WAY_ROWS, FEWEST_ROWS = 60, 8
+ROWS_BESIDE_LOSS, FEWEST_ROWS_BESIDE_LOSS = 60, 8
 """Of a straight way on either side, the nearest: most, and fewest."""
-STRAIGHT = 0.01
+STRAIGHT_BESIDE_LOSS = 0.01
 """Of the torque along it, what a straight way's rms may be off a line beyond twice its noise: that of a sine
 from its top over an eighth of the cycle is 0.06."""
 
 
 BEYOND = 1.05
 """Times the largest torque of its cycles that was read, which a turn does not pass."""
-MOVED_STEPS, MOVED_SIGMAS = 2.0, 3.0
+MOVED_RIG_STEPS, MOVED_RIG_SIGMAS = 2.0, 3.0
 """Usual steps of torque, and deviations of what two ways say, beyond which a rig has moved between two rows:
 one that stood there, and turned then, would seem to have gone on."""
 TURNS = ("lost_turns", 0.0)
@@ -73,8 +73,8 @@ def _lost_turns(history: History) -> LostTurns:
         for rows, after, ways in zip(units, lost, edges, strict=False):
             for (first, turn), (_, last) in pairwise(pairwise(ways.tolist())):
                 if turn - 1 in after:
-                    way = rows[max(first + AT_CORNER, turn - WAY_ROWS) : turn]
-                    back = rows[turn : min(last - AT_CORNER, turn + WAY_ROWS)]
+                    way = rows[max(first + AT_CORNER, turn - ROWS_BESIDE_LOSS) : turn]
+                    back = rows[turn : min(last - AT_CORNER, turn + ROWS_BESIDE_LOSS)]
                     further = _further(history, way, back)
                     if further is not None:
                         found[int(rows[turn - 1])] = further
@@ -84,13 +84,15 @@ def _lost_turns(history: History) -> LostTurns:
 def _further(history: History, before: np.ndarray, after: np.ndarray) -> float | None:
     """How far beyond its last row a straight way meets the next [N·m]; None where they go on, or apart."""
     assert history.time_s is not None
-    if min(len(before), len(after)) < FEWEST_ROWS:
+    if min(len(before), len(after)) < FEWEST_ROWS_BESIDE_LOSS:
         return None
     lines = []
     for rows in (before, after):
         t, torque = history.time_s[rows] - history.time_s[before[-1]], history.torque_Nm[rows]
         line = np.polynomial.Polynomial.fit(t, torque, 1).convert()
-        if rms(torque - line(t)) > 2 * torque_noise_Nm(history) + STRAIGHT * np.ptp(torque):
+        if rms(torque - line(t)) > 2 * torque_noise_Nm(history) + STRAIGHT_BESIDE_LOSS * np.ptp(
+            torque
+        ):
             return None
         lines.append(line)
     (level, slope), (later, back) = (np.pad(line.coef, (0, 2 - len(line.coef))) for line in lines)
@@ -100,7 +102,7 @@ def _further(history: History, before: np.ndarray, after: np.ndarray) -> float |
     until = history.time_s[after[0]] - history.time_s[before[-1]]
     step = max(np.median(np.abs(np.diff(history.torque_Nm[rows]))) for rows in (before, after))
     doubt = torque_noise_Nm(history) * np.sqrt(4 / len(before) + 4 / len(after))  # at a line's end
-    moved = abs(later + back * until - level) > MOVED_STEPS * step + MOVED_SIGMAS * doubt
+    moved = abs(later + back * until - level) > MOVED_RIG_STEPS * step + MOVED_RIG_SIGMAS * doubt
     cycles = np.isin(history.cycle, history.cycle[[before[-1], after[0]]])
     alike = cycles & (history.unit == history.unit[before[-1]])
     most = BEYOND * float(np.abs(history.torque_Nm[alike]).max())

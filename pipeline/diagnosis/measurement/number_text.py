@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-Mark = Literal[".", ","]
-OTHER: dict[Mark, Mark] = {".": ",", ",": "."}
+DecimalMark = Literal[".", ","]
+OTHER: dict[DecimalMark, DecimalMark] = {".": ",", ",": "."}
 _GROUPS = " \u00a0\u202f\u2009'’"
 """Spaces and apostrophes between thousands: never a decimal mark."""
 _MINUS = str.maketrans({"−": "-", "–": "-"})
@@ -50,7 +50,7 @@ def evidence_of(texts: Sequence[str]) -> MarkEvidence:
     """Which decimal marks a column shows."""
     whole = "\n".join(texts)
 
-    def first(mark: Mark) -> int | None:
+    def first(mark: DecimalMark) -> int | None:
         found = _DECIMAL[mark].search(whole) if mark in whole else None
         return None if found is None else whole.count("\n", 0, found.end())
 
@@ -59,7 +59,7 @@ def evidence_of(texts: Sequence[str]) -> MarkEvidence:
     return MarkEvidence(first("."), first(","), either)
 
 
-def numbers_of(texts: Sequence[str], mark: Mark) -> tuple[np.ndarray, int | None]:
+def numbers_of(texts: Sequence[str], mark: DecimalMark) -> tuple[np.ndarray, int | None]:
     """Values (n,), and the first text that is no finite number (None: all are)."""
     whole = "\n".join(texts)
     if mark == "," and "." not in whole:
@@ -80,7 +80,7 @@ def numbers_of(texts: Sequence[str], mark: Mark) -> tuple[np.ndarray, int | None
     return values, None
 
 
-def number_of(text: str, mark: Mark) -> float | None:
+def number_of(text: str, mark: DecimalMark) -> float | None:
     """The finite number that a text is, None for none."""
     plain = text.translate(_MINUS)
     grouped = _GROUPED[mark].fullmatch(plain)

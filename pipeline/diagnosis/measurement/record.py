@@ -19,7 +19,7 @@ HEADS_SHOWN = 12
 """Columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
 """One more than zero, stiffness and gap."""
-LARGEST_STEP = 0.01
+LARGEST_TURN_PER_ROW = 0.01
 """Of a turn, from row to row: 3.6°, far beyond the twist of any gear that is locked, and of its noise."""
 
 
@@ -199,7 +199,7 @@ def _refuse_full_turns(table: MeasuredTable, unit: np.ndarray) -> None:
     turns = np.round(step / ARCSEC_PER_TURN)
     jumps = np.flatnonzero(np.abs(turns) == 1)
     rest = np.abs(step - turns * ARCSEC_PER_TURN)
-    if not len(jumps) or np.any(rest > LARGEST_STEP * ARCSEC_PER_TURN):
+    if not len(jumps) or np.any(rest > LARGEST_TURN_PER_ROW * ARCSEC_PER_TURN):
         return
     column = table.read_as.column("angle_arcsec")
     more = f", the first of {len(jumps)} times" if len(jumps) > 1 else ""

@@ -11,9 +11,9 @@ from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 PARTS = 12
 """Of a cycle: in so small a part a branch is a parabola but for a thousandth of its twist."""
-FEWEST_ROWS, MOST_ROWS = 7, 400
+FEWEST_WINDOW_ROWS, MOST_WINDOW_ROWS = 7, 400
 """Of a window: a parabola then takes up less than half of the noise, and more rows say no more of it."""
-SPIKE_STEPS = 5
+ANGLE_SPIKE_STEPS = 5
 """Times the step from row to row that 99 of 100 stay below: a reading so far outside of the rows around it
 is wrong. One bends the parabola away from all rows of its window; smaller ones lose their weight in time."""
 
@@ -23,14 +23,14 @@ def rough_residual(
 ) -> np.ndarray:
     """(kept,) what a local parabola leaves over windows of a twelfth of a cycle: noise and little else."""
     out = np.empty(int(kept.sum()))
-    width = int(np.clip(rows_per_cycle / PARTS, FEWEST_ROWS, MOST_ROWS))
+    width = int(np.clip(rows_per_cycle / PARTS, FEWEST_WINDOW_ROWS, MOST_WINDOW_ROWS))
     y = angle[kept]
     step = float(np.quantile(np.abs(np.diff(y)), 0.99)) if len(y) > 1 else 0.0
     for s in stretches_of(history, kept):
         piece, level = y[s], _without_spikes(y[s], step)
         for a in range(0, len(piece), width):
             b = min(len(piece), a + width)
-            if b - a < FEWEST_ROWS and b == len(piece) and a > 0:
+            if b - a < FEWEST_WINDOW_ROWS and b == len(piece) and a > 0:
                 a = max(0, b - width)
             x = np.linspace(-1, 1, b - a)
             degree = min(2, max(0, b - a - 4))
@@ -40,12 +40,12 @@ def rough_residual(
 
 def _without_spikes(y: np.ndarray, step: float) -> np.ndarray:
     """The readings (n,), one or two in a row that are far outside of the two rows on either side replaced."""
-    if len(y) < FEWEST_ROWS:
+    if len(y) < FEWEST_WINDOW_ROWS:
         return y
     padded = np.pad(y, 2, mode="reflect")
     around = np.sort([padded[k : k + len(y)] for k in (0, 1, 3, 4)], axis=0)
     outside = np.maximum(around[1] - y, y - around[2])
-    return np.where(outside > SPIKE_STEPS * step, around[1:3].mean(axis=0), y)
+    return np.where(outside > ANGLE_SPIKE_STEPS * step, around[1:3].mean(axis=0), y)
 
 
 def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:

@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn,
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
-from flexspline.pipeline.diagnosis.measurement.number_text import Mark, numbers_of
+from flexspline.pipeline.diagnosis.measurement.number_text import DecimalMark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
 from flexspline.pipeline.diagnosis.measurement.units import symbol
@@ -162,7 +162,7 @@ def _labels(grid: CellGrid, column: ReadColumn, texts: list[str]) -> tuple[str, 
     return tuple(texts)
 
 
-def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:
+def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: DecimalMark) -> np.ndarray:
     """Numbers in our unit; what is nothing, not finite or beyond any rig is refused."""
     values, bad = numbers_of(texts, mark)
     if bad is not None:

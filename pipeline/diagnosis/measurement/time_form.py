@@ -17,6 +17,7 @@ _FORM = re.compile(
     re.IGNORECASE,
 )
 _DIGITS = {"ms": 3, "msec": 3, "us": 6, "µs": 6, "μs": 6, "%f": 6}
+"""Digits after the second: thousandths or millionths; %f is six by C and Python. Of letters, one each."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ Factors = Mapping[str, float]
 
 
 ARCSEC_PER_TURN = 1_296_000.0
-"""360 · 60 · 60."""
+"""360 deg of 60 arcmin of 60 arcsec."""
 KGF_N = 9.80665
 """Standard gravity on 1 kg: NIST SP 811 (2008), appendix B.8."""
 LBF_N = 0.45359237 * KGF_N
@@ -34,13 +34,15 @@ ANGLE: Factors = {
 }  # fmt: skip
 TIME: Factors = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
 TEMPERATURE: Factors = {"C": 1.0, "K": 1.0}
+"""Of a difference; the two zeros are KELVIN_AT_0_C apart."""
 STIFFNESS: Factors = {
     "Nm_per_rad": 1.0, "kNm_per_rad": 1e3, "Nm_per_deg": 180 / pi, "Nm_per_arcmin": 10800 / pi,
 }  # fmt: skip
+"""A half turn is π rad, 180 deg, 10 800 arcmin."""
 
 
 KELVIN_AT_0_C = 273.15
-"""SI Brochure, 9th edition (2019), section 2.3.1."""
+"""[K]: SI Brochure, 9th edition (2019), section 2.3.1."""
 COUNTS = "counts"
 """Of an encoder: an angle only once the counts of a turn are known."""
 
@@ -55,6 +57,7 @@ class MeasuredQuantity:
 
 
 _DEGREES = {unit: factor / 3600 for unit, factor in ANGLE.items()}
+"""What one of each unit of angle is in deg, of 3600 arcsec: our unit of the input angle alone."""
 QUANTITIES: Mapping[str, MeasuredQuantity] = {
     "torque": MeasuredQuantity("Nm", TORQUE, "torque"),
     "angle": MeasuredQuantity("arcsec", ANGLE, "angle"),

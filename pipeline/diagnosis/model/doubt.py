@@ -30,7 +30,7 @@ MOST_PARAMETERS = 120
 
 
 @dataclass(frozen=True)
-class Doubt:
+class PredictionUncertainty:
     """What a model's predictions may be off by.
 
     Attributes
@@ -91,7 +91,7 @@ def parameter_count(model: ExtendedModel) -> int:
 
 
 def deviation_of(
-    model: ExtendedModel, doubt: Doubt, history: History, units: tuple[str, ...]
+    model: ExtendedModel, doubt: PredictionUncertainty, history: History, units: tuple[str, ...]
 ) -> Deviation:
     """How far readings of a history may be from the model's angles: one standard deviation.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
-from flexspline.pipeline.diagnosis.model.doubt import Doubt, parameter_count
+from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty, parameter_count
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
     DOUBT,
@@ -33,7 +33,7 @@ POSITIVE = ("smallest_loop_Nm", "rate_Nm_per_s", "slowest_rate_Nm_per_s")
 """Numbers of [doubt.measured] that may be absent."""
 
 
-def doubt_lines(doubt: Doubt) -> list[str]:
+def doubt_lines(doubt: PredictionUncertainty) -> list[str]:
     """Lines of the table [doubt]."""
     lines = [ABOUT.format(reading=repr(doubt.reading_arcsec), noise=repr(doubt.torque_noise_Nm))]
     lines += [
@@ -54,7 +54,9 @@ def doubt_lines(doubt: Doubt) -> list[str]:
     return [*lines, ""]
 
 
-def read_doubt(table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse) -> Doubt:
+def read_doubt(
+    table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse
+) -> PredictionUncertainty:
     """The table [doubt] of a file, checked against its model.
 
     Raises
@@ -88,7 +90,9 @@ def read_doubt(table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse) -
         rate_Nm_per_s=fastest,
         slowest_rate_Nm_per_s=slowest,
     )
-    return Doubt(float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span)
+    return PredictionUncertainty(
+        float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span
+    )
 
 
 def _covariance(rows: list[Any], refuse: Refuse) -> np.ndarray:

@@ -74,6 +74,8 @@ class ExtendedModel:
             for channel in channels_needed(known_causes()[cause_id], elements):
                 if getattr(history, channel) is None:
                     raise ChannelError(channel, f"is missing; {cause_id} needs it")
+        if not len(history):
+            return np.empty(0)
         return self.angle_of(history, (unit,))
 
     def angle_of(self, history: History, units: tuple[str, ...] = ("",)) -> np.ndarray:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.closed_loop import loop_widths
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -15,8 +16,6 @@ from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan
 
 SMALLER = 0.8
 """Of the record's smallest cycle's torque: what friction does in smaller loops was not seen."""
-LOOP_ROWS = 101
-"""Of a way from end to end: torques 2 % of the largest apart."""
 
 
 def memory_variance(model: ExtendedModel, read: History, ends_Nm: Ends) -> np.ndarray:
@@ -36,11 +35,7 @@ def memory_variance(model: ExtendedModel, read: History, ends_Nm: Ends) -> np.nd
 def half_loop_arcsec(model: ExtendedModel, largest_Nm: float) -> float:
     """Half the width of the friction's closed loop at this torque, where it is widest."""
     friction = replace(_friction_alone(model), gap_arcsec=0.0)
-    up = np.linspace(-largest_Nm, largest_Nm, LOOP_ROWS)
-    loop = np.concatenate([up, up[::-1], up, up[::-1]])
-    angle = friction.angle_of(History.course(loop))
-    there, back = angle[2 * LOOP_ROWS : 3 * LOOP_ROWS], angle[3 * LOOP_ROWS :]
-    return float(np.abs(back[::-1] - there).max()) / 2
+    return float(np.abs(loop_widths(friction.angle_of, largest_Nm)).max()) / 2
 
 
 def smaller_loops(span: MeasuredSpan, history: History) -> np.ndarray:
@@ -56,11 +51,11 @@ def smaller_loops(span: MeasuredSpan, history: History) -> np.ndarray:
 def reached_Nm(span: MeasuredSpan, history: History) -> np.ndarray:
     """(n,) largest |torque| since the turn before the last; infinite before a unit's first turn."""
     largest = max(map(abs, span.torque_Nm))
-    direction = rising(history, LARGEST_NOISE * largest)  # whatever noise the torque has
+    rises = rising(history, LARGEST_NOISE * largest)  # whatever noise the torque has
     out = np.full(len(history), np.inf)
     for rows in history.unit_slices:
-        way, size = direction[rows], np.abs(history.torque_Nm[rows])
-        turns = np.flatnonzero((np.diff(way) != 0) & (way[:-1] != 0)) + 1
+        direction, size = rises[rows], np.abs(history.torque_Nm[rows])
+        turns = np.flatnonzero((np.diff(direction) != 0) & (direction[:-1] != 0)) + 1
         starts = np.r_[0, turns]
         for k in range(1, len(starts)):
             end = starts[k + 1] if k + 1 < len(starts) else len(rows)

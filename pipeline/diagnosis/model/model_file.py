@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Shape
 from flexspline.pipeline.diagnosis.measurement.errors import ModelFileError
 from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
-from flexspline.pipeline.diagnosis.model.doubt import Doubt
+from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
 from flexspline.pipeline.diagnosis.model.doubt_file import read_doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
@@ -80,7 +80,7 @@ class ModelFile:
     path: Path
     model: ExtendedModel
     provenance: Provenance
-    doubt: Doubt | None = None
+    doubt: PredictionUncertainty | None = None
     alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 

@@ -10,7 +10,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
-from flexspline.pipeline.diagnosis.model.doubt import Doubt
+from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
 from flexspline.pipeline.diagnosis.model.doubt_file import doubt_lines
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import FORMAT, Provenance
@@ -29,7 +29,7 @@ def model_text(
     provenance: Provenance,
     found: Sequence[NamedCause] = (),
     gain: Gain | None = None,
-    doubt: Doubt | None = None,
+    doubt: PredictionUncertainty | None = None,
     held_out: str = "",
 ) -> str:
     """The file's text; `found` and `gain` are told beside the numbers that predict.

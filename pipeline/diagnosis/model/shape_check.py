@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
@@ -83,11 +83,11 @@ def _known(cause: Cause) -> tuple[frozenset[frozenset[str]], dict[str, frozenset
     """Sets of parameter names that a cause uses, and the values of those that no record changes."""
     prediction = Prediction(10.0, 0.3, 60.0, 10.0)
     records = (example_history(), example_history(7.0, 200.0, 9))
-    tried = [cause.shapes(Rig(prediction, h)) for h in records]
+    tried = [cause.shapes(FitContext(prediction, h)) for h in records]
     apart = frozenset(frozenset(shape) for shape in cause.searched_apart)
     if not any(tried):
         return apart or frozenset({frozenset()}), {}
-    unheld = cause.shapes(Rig(prediction, example_history(held=0)))
+    unheld = cause.shapes(FitContext(prediction, example_history(held=0)))
     names = frozenset(frozenset(shape) for shapes in (*tried, unheld) for shape in shapes)
     fixed = {}
     for name in set().union(*names) - set(cause.tunable):

@@ -27,7 +27,7 @@ MOST_STEP = 3.0
 """Prior standard deviations that a round may move a parameter: beyond, the linear model is not trusted."""
 DIFFERENCE_STEP = 1e-4
 """Of a prior standard deviation, for forward differences: doubles round them at 1e-12 of it."""
-PAIR_NATS = -1.0
+SECOND_TERM_NATS = -1.0
 """Log prior odds of a second term, 1 to 2.7."""
 MOST_ZONE = 1.2
 """Beyond the lobes there is nowhere to go; a fifth is allowed for noise."""
@@ -138,7 +138,9 @@ def fit(data: SpecimenData, terms: Sequence[SpecimenParameter]) -> LaplaceFit:
             break
     scores = np.array([p + _evidence(target, slope, s) for p, s in noises])
     score = (
-        float(logsumexp(scores)) + sum(t.odds for t in terms) + PAIR_NATS * max(0, len(terms) - 1)
+        float(logsumexp(scores))
+        + sum(t.odds for t in terms)
+        + SECOND_TERM_NATS * max(0, len(terms) - 1)
     )
     covariance = np.linalg.inv(inner) * np.outer(spread, spread)
     allowed = True

@@ -28,13 +28,13 @@ TOLERANCE_SHARE = 0.5
 """A dimension that is right is off by some half of its tolerance."""
 MOST_TOLERANCES = 8.0
 """Beyond, it would be another drawing."""
-UNNAMED_SPREAD = 0.07
+UNNAMED_STRUCTURE_SPREAD = 0.07
 """Of ln K, for structure without a name."""
 CAUSE_KINDS = 4
 """Modulus, dimension, fixture, load zone: even odds."""
 LEAST_rad_per_Nm = 1e-30
 """Of a specimen's compliance, for its logarithm: one that is tried as less is as bad as any."""
-UNNAMED_NATS = -3.0
+UNNAMED_STRUCTURE_NATS = -3.0
 """Log prior odds of all structure without a name, 1 in 20: a fifth of one of CAUSE_KINDS."""
 
 
@@ -135,9 +135,9 @@ def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[SpecimenParame
         ("?specimen", UnnamedForm("one_specimen", i + 1), (np.arange(n) == i).astype(float))
         for i in range(n)
     ]
-    odds = UNNAMED_NATS - float(np.log(len(shapes)))
+    odds = UNNAMED_STRUCTURE_NATS - float(np.log(len(shapes)))
     return [
-        SpecimenParameter(owner, "column", UNNAMED_SPREAD, odds, form=form, column=column)
+        SpecimenParameter(owner, "column", UNNAMED_STRUCTURE_SPREAD, odds, form=form, column=column)
         for owner, form, column in shapes
     ]
 

@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_
 
 SMALLEST_STEP = 0.05
 """Of a dimension: a tolerance can be so small a share of it that K's change would be the mesh's."""
-LARGEST_STEP = 0.3
+LARGEST_DIMENSION_STEP = 0.3
 """Of a dimension: a tolerance can be more than all of it, of a fillet say; a third less is still a part."""
 LOOKED_AT = 5.0
 """General tolerances: nine of ten wrong dimensions are nearer by their prior, `WRONG_TOLERANCES`."""
@@ -132,7 +132,7 @@ def _log_slope(
     bench: Bench, design: Design, part: PartName, key: str, nominal: float, tolerance: float
 ) -> tuple[float, float]:
     """Slope and curvature of ln C over ln d; one-sided where the geometry has no room."""
-    step = min(max(tolerance, SMALLEST_STEP * nominal), LARGEST_STEP * nominal)
+    step = min(max(tolerance, SMALLEST_STEP * nominal), LARGEST_DIMENSION_STEP * nominal)
     points: list[tuple[float, float]] = []
     here = log(bench.as_in_sum(design, part))
     for side in (-step, step):

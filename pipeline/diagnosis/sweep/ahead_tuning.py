@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import behind
@@ -121,7 +121,7 @@ class _Trial:
         teeth = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
         # found anew from each friction, the noise would take most of the time
         history = behind(self.true, self.true.torque_Nm - teeth.torque_Nm)
-        rig = Rig(p.prediction, history)
+        rig = FitContext(p.prediction, history)
         base, prior = base_columns(rig, self.evidence.columns.base[:, -NOISE_COLUMNS:])
         blocks = [base]
         precision = [prior**-2]

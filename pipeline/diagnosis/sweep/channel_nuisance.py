@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
@@ -35,7 +35,7 @@ DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
 
-def _passed(rig: Rig) -> np.ndarray | None:
+def _passed(rig: FitContext) -> np.ndarray | None:
     """(n,) time since each unit's first row, of the longest unit's; None without time."""
     if rig.duration_s <= 0 or rig.history.time_s is None:
         return None
@@ -45,14 +45,14 @@ def _passed(rig: Rig) -> np.ndarray | None:
     return t
 
 
-def over_time(rig: Rig) -> Made:
+def over_time(rig: FitContext) -> Made:
     """A smooth drift of the zero."""
     t = _passed(rig)
     if t is not None:
         yield "time_s", UnnamedForm("smooth"), smooth(2 * t - 1)
 
 
-def changing_stiffness(rig: Rig) -> Made:
+def changing_stiffness(rig: FitContext) -> Made:
     """Stiffness that changes with time by a polynomial."""
     t = _passed(rig)
     if t is None:
@@ -63,7 +63,7 @@ def changing_stiffness(rig: Rig) -> Made:
         yield "time_s", UnnamedForm("changing_stiffness"), torque[:, None] * powers
 
 
-def waves_and_steps(rig: Rig) -> Made:
+def waves_and_steps(rig: FitContext) -> Made:
     """Zeros that swing, or jump once in one unit."""
     t = _passed(rig)
     if t is None:
@@ -75,7 +75,7 @@ def waves_and_steps(rig: Rig) -> Made:
             yield from step_from(rig, int(rows[int(place * len(rows))]))
 
 
-def step_from(rig: Rig, row: int) -> Made:
+def step_from(rig: FitContext, row: int) -> Made:
     """The zero jumps at a row, until its unit ends."""
     unit = rig.history.unit
     after = (unit == unit[row]) & (np.arange(len(unit)) >= row)
@@ -83,7 +83,7 @@ def step_from(rig: Rig, row: int) -> Made:
     yield "time_s", UnnamedForm("step", of_one), after[:, None].astype(float)
 
 
-def over_cycle(rig: Rig) -> Made:
+def over_cycle(rig: FitContext) -> Made:
     """Zero, stiffness and gap of each cycle's own, and stiffness that changes steadily or slowing down."""
     if rig.cycles < 2:
         return
@@ -101,7 +101,7 @@ def over_cycle(rig: Rig) -> Made:
     yield "cycle", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 
 
-def over_temperature(rig: Rig) -> Made:
+def over_temperature(rig: FitContext) -> Made:
     """What temperature can do beside a gap linear in it.
 
     Of a gap that is not linear only what no linear one can be: one that grew as (ϑ − 20 °C)² alone would not
@@ -124,7 +124,7 @@ def over_temperature(rig: Rig) -> Made:
         yield "temperature_C", UnnamedForm("bent_gap"), bent[:, None]
 
 
-def zeros_apart(rig: Rig) -> Made:
+def zeros_apart(rig: FitContext) -> Made:
     """A zero of each cycle's and of each position's own, none shared with its neighbours."""
     if rig.cycles > 1:
         yield "cycle", UnnamedForm("own_zero"), levels(rig.history.cycle.astype(float), MANY_LEVELS)
@@ -134,13 +134,13 @@ def zeros_apart(rig: Rig) -> Made:
         yield "input_angle_deg", UnnamedForm("own_zero"), levels(position, MANY_LEVELS)
 
 
-def _telling(rig: Rig) -> bool:
+def _telling(rig: FitContext) -> bool:
     """Whether zeros of the record's positions may be something else than the harmonics 1, 2 and 4."""
     angle = rig.history.input_angle_deg
     return angle is not None and len(np.unique(np.mod(angle, 360.0))) > TELLING
 
 
-def over_position(rig: Rig) -> Made:
+def over_position(rig: FitContext) -> Made:
     """Zero, stiffness and gap of each position's own."""
     angle = rig.history.input_angle_deg
     if angle is None or np.ptp(angle) == 0:
@@ -153,7 +153,7 @@ def over_position(rig: Rig) -> Made:
     yield "input_angle_deg", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 
 
-def over_turns(rig: Rig) -> Made:
+def over_turns(rig: FitContext) -> Made:
     """A zero that goes on with the wave generator's angle, not periodic in it.
 
     So does an eccentric encoder's at the output, in part of an output turn. Where positions are taken in
@@ -168,7 +168,7 @@ def over_turns(rig: Rig) -> Made:
         yield "input_angle_deg", UnnamedForm("changing_zero"), smooth(turned, degree)
 
 
-def over_unit(rig: Rig) -> Made:
+def over_unit(rig: FitContext) -> Made:
     """Stiffness and gap of each unit's own."""
     units = rig.history.unit_slices
     if len(units) < 2:

@@ -36,7 +36,7 @@ from flexspline.pipeline.diagnosis.decision import Decision, decided, overruled
 from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
-from flexspline.pipeline.diagnosis.model.doubt import Doubt
+from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
@@ -82,7 +82,7 @@ class SweepAnalysis:
 
     explained: ExplainedSweep
     model: ExtendedModel
-    doubt: Doubt
+    doubt: PredictionUncertainty
     tests: tuple[ChannelTest, ...]
 
 

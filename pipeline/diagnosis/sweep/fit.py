@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, FrictionHysteresis
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
@@ -46,7 +46,7 @@ class SweepFit:
     posterior: Posterior
 
     @property
-    def rig(self) -> Rig:
+    def rig(self) -> FitContext:
         return self.evidence.columns.rig
 
     @property
@@ -80,7 +80,7 @@ class SweepFit:
             Estimate(p.compliance + float(mean[k]), float(std[k])),
         )
 
-    def measured_rig(self, mean: np.ndarray | None = None) -> Rig:
+    def measured_rig(self, mean: np.ndarray | None = None) -> FitContext:
         """The rig with compliance and gap as measured."""
         mean = self.posterior.mean if mean is None else mean
         k = self.units

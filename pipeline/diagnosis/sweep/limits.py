@@ -33,7 +33,7 @@ def broken_limit(
     prepared, fit = explained.prepared, explained.identified.fit
     slip = slip_of(prepared.rig.history, prepared.sweep.angle_arcsec)
     if slip is not None:
-        return Unexplained("torque_Nm", slip.way_arcsec, 0.0, slip)
+        return Unexplained("torque_Nm", slip.slip_arcsec, 0.0, slip)
     size = sweep_size(prepared.rig.history, prepared.sweep.angle_arcsec, prepared.prediction)
     if size is not None and slope_beyond(size, MOST_SLOPE_RATIO):
         return Unexplained("torque_Nm", size.residual_arcsec, 0.0, far_slope(size, sweep))

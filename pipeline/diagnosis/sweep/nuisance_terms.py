@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
@@ -74,14 +74,14 @@ class _NuisanceKind:
     `less`: of what the columns come less, as calibration and causes can be that; None: as they are.
     """
 
-    make: Callable[[Rig], Made]
-    less: Callable[[Rig], np.ndarray] | None = None
+    make: Callable[[FitContext], Made]
+    less: Callable[[FitContext], np.ndarray] | None = None
     positive: bool = False
     against: frozenset[str] = frozenset()
     spread: float = NUISANCE_SPREAD
 
 
-def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
+def nuisance_terms(rig: FitContext, step: int | None = None) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
     `step` : the row from which a jump of the zero is likeliest. Columns have unit rms in the rows that count.
@@ -126,14 +126,14 @@ def _projection(columns: np.ndarray, share: np.ndarray) -> np.ndarray:
     return inverse
 
 
-def _of_torque(rig: Rig) -> np.ndarray:
+def _of_torque(rig: FitContext) -> np.ndarray:
     """(n, k) zero of each unit, torque without its noise, side of the gap."""
     h = rig.history
     zeros = h.unit[:, None] == np.arange(len(h.unit_slices))
     return np.column_stack([zeros, less_jitter(h).torque_Nm, h.sign])
 
 
-def _of_lags(rig: Rig) -> np.ndarray:
+def _of_lags(rig: FitContext) -> np.ndarray:
     """(n, k) zero of each unit, torque, side of the gap, and torque through two lags.
 
     A wave in time with the torque's own period is the torque without its noise, and would win by that; a

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
@@ -53,7 +53,7 @@ class PreparedSweep:
 
     sweep: Sweep
     prediction: Prediction
-    rig: Rig
+    rig: FitContext
     columns: DesignMatrix
     target: np.ndarray
     kept: np.ndarray
@@ -94,7 +94,7 @@ def prepare(
     if ahead is not None:
         history = known_causes()[FRICTION].at_teeth((ahead,), true)
         carried = FrictionAhead(ahead, true.torque_Nm - history.torque_Nm)
-    rig = Rig(prediction, history)
+    rig = FitContext(prediction, history)
     target = sweep.angle_arcsec - prediction.for_race.angle_arcsec(history)
     band = crossing_band_Nm(history)
     kept = naming_rows(history, band)

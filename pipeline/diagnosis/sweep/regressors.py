@@ -9,7 +9,7 @@ from math import log
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
@@ -75,7 +75,7 @@ class DesignMatrix:
     `rig` has the torque at the teeth, where friction lies `ahead` of them.
     """
 
-    rig: Rig
+    rig: FitContext
     base: np.ndarray
     base_prior: np.ndarray
     """(b,) standard deviations; the columns are zeros, compliance and gap, common and per unit."""
@@ -120,7 +120,7 @@ class DesignMatrix:
 
 
 def design_matrix(
-    rig: Rig,
+    rig: FitContext,
     known: dict[str, Cause],
     ahead: FrictionAhead | None = None,
     step: int | None = None,
@@ -155,7 +155,7 @@ def design_matrix(
 
 
 def _nuisance_regressor(
-    rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: Rig
+    rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: FitContext
 ) -> Regressor:
     alike = sum(r.channel == rival.channel for r in rivals)
     k = rival.columns.shape[1]
@@ -174,7 +174,7 @@ LEAST_PRIOR = 1e-9
 """Arcsec, or arcsec per N·m: what the design states without doubt is held, by a deviation above 0."""
 
 
-def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+def base_columns(rig: FitContext, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """(n, b) columns of the calibration and their prior standard deviations (b,).
 
     With noise in the torque reading, whatever knows the true torque better explains the angle better.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, ROUNDING_OF_SUMS
@@ -33,7 +33,7 @@ FINEST_PART = 0.1
 the quickest ring most."""
 
 
-def giving_way(rig: Rig) -> Made:
+def giving_way(rig: FitContext) -> Made:
     """The output goes on while torque is high, and does not come back with it.
 
     At once with the torque (a play operator), at a rate in proportion to what the lock cannot hold, or by
@@ -108,7 +108,7 @@ def _highest(history: History, limit_Nm: float, load: np.ndarray) -> np.ndarray:
     return out
 
 
-def ringing(rig: Rig) -> Made:
+def ringing(rig: FitContext) -> Made:
     """Damped waves that begin wherever torque changes its rate suddenly, in proportion to the change.
 
     Of any phase, and of any period that rows can follow. They start from the programme's corners and not

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.operators import (
     direction_of_loading,
     lags,
@@ -33,12 +33,12 @@ Made = Iterator[tuple[str, UnnamedForm, np.ndarray]]
 """Channel, form, columns (n, k)."""
 
 
-def _steady(rig: Rig) -> np.ndarray:
+def _steady(rig: FitContext) -> np.ndarray:
     """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
     return levelled_torque_Nm(rig.history) / rig.torque_Nm
 
 
-def over_torque(rig: Rig) -> Made:
+def over_torque(rig: FitContext) -> Made:
     """Smooth, even and rippled functions of torque."""
     torque = _steady(rig)
     yield "torque_Nm", UnnamedForm("smooth"), smooth(torque)
@@ -46,7 +46,7 @@ def over_torque(rig: Rig) -> Made:
     yield from _ripples(torque, "torque_Nm")
 
 
-def softening(rig: Rig) -> Made:
+def softening(rig: FitContext) -> Made:
     """Stiffness that falls with load: no known cause, and anchored where the load is small."""
     torque = _steady(rig)
     for power in SOFTENING:
@@ -54,7 +54,7 @@ def softening(rig: Rig) -> Made:
         yield "torque_Nm", UnnamedForm("softening"), soft[:, None]
 
 
-def over_angle(rig: Rig) -> Made:
+def over_angle(rig: FitContext) -> Made:
     """Ripples over the output angle as simulated."""
     steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
     angle = rig.prediction.for_race.angle_arcsec(steady)
@@ -66,7 +66,7 @@ def _ripples(x: np.ndarray, channel: str) -> Made:
         yield channel, UnnamedForm("ripple"), wave((x + 1) / 2, k)
 
 
-def over_direction(rig: Rig) -> Made:
+def over_direction(rig: FitContext) -> Made:
     """A loop wider on one side of zero than on the other: friction elements make none such."""
     torque = rig.history.torque_Nm / rig.torque_Nm
     direction = direction_of_loading(rig.history)
@@ -74,7 +74,7 @@ def over_direction(rig: Rig) -> Made:
     yield "direction", UnnamedForm("uneven_loop"), basis
 
 
-def leading(rig: Rig) -> Made:
+def leading(rig: FitContext) -> Made:
     """Loops run through the wrong way round: friction and lag with their sign reversed."""
     yield "direction", UnnamedForm("leading"), direction_of_loading(rig.history)[:, None]
     thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm

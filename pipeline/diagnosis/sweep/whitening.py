@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import coo_array, csr_array, hstack
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, Whitener, stretches_of
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import reading_of
@@ -21,7 +21,7 @@ MOST_ROWS = 4000
 class Whitening:
     """Of the kept rows (n,) of a rig's record, whose angle has this noise."""
 
-    rig: Rig
+    rig: FitContext
     kept: np.ndarray
     noise: Noise
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, Doubt
+from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, PredictionUncertainty
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
@@ -24,7 +24,7 @@ class WrittenModel:
     """The model, and what its predictions may be off by."""
 
     model: ExtendedModel
-    doubt: Doubt
+    doubt: PredictionUncertainty
 
 
 def written_model(
@@ -47,7 +47,7 @@ def written_model(
     of_row = max(floor, gain.rmse_after) if gain else floor
     if (averaging := explained.prepared.sweep.averaging) is not None:  # so far it is of means
         of_row = float(np.sqrt(of_row**2 + averaging.variance_within(model.compliance)))
-    doubt = Doubt(
+    doubt = PredictionUncertainty(
         of_row,
         torque_noise_Nm(sweep.history),
         _covariance(fit, model, explained.ahead),

@@ -40,7 +40,7 @@ RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0
 """Deviations of a place by which two rivals must differ to be told apart there."""
-Outcome = Literal["consistent", "named", "pair", "unknown"]
+InputsVerdict = Literal["consistent", "named", "pair", "unknown"]
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class GearInputs:
     apart : None where nothing is named, or no torque up to twice the largest tells the first two apart.
     """
 
-    outcome: Outcome
+    outcome: InputsVerdict
     remainder_arcsec: float
     chi_square: float
     places: int

@@ -26,7 +26,7 @@ PAIR_SETTLED_SHARE = 0.02
 """Of a first step: a smaller change of both inputs ends the search."""
 LEAST_ROOM = 1e-9
 """In first steps: an input whose end is reached has no room, and `lsq_linear` wants ends that differ."""
-Curve = Callable[[Chain], np.ndarray]
+ChainAngles = Callable[[Chain], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,11 @@ class FittedPair:
 
 
 def fitted_pairs(
-    inputs: Sequence[GearInput], chain: Chain, curve: Curve, wanted: np.ndarray, std: np.ndarray
+    inputs: Sequence[GearInput],
+    chain: Chain,
+    curve: ChainAngles,
+    wanted: np.ndarray,
+    std: np.ndarray,
 ) -> list[FittedPair]:
     """The most promising pairs, the best first.
 
@@ -79,7 +83,7 @@ def fitted_pairs(
 def _followed(
     both: tuple[GearInput, GearInput],
     chain: Chain,
-    curve: Curve,
+    curve: ChainAngles,
     start: tuple[np.ndarray, np.ndarray],
     measured: tuple[np.ndarray, np.ndarray],
 ) -> FittedPair:

@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED
 
 LOOP_POWERS = (0, 1, 2)
 """Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""
-FEWEST_ROWS = 24
+FEWEST_BEND_ROWS = 24
 """Twice the unknowns of one unit."""
 
 
@@ -34,7 +34,7 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     history = sweep.history
     largest = float(np.abs(history.torque_Nm).max())
     rows = np.abs(history.torque_Nm) > BAND_SHARE * largest
-    if int(rows.sum()) < FEWEST_ROWS:
+    if int(rows.sum()) < FEWEST_BEND_ROWS:
         return prediction
     bend, line = prediction.bend.at(history.torque_Nm), prediction.compliance * history.torque_Nm
     beside = _beside(sweep, largest)[rows]
@@ -50,8 +50,8 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
 def _beside(sweep: Sweep, largest: float) -> np.ndarray:
     """(n, k) columns of all that is neither slope nor bend."""
     history = sweep.history
-    share, way = history.torque_Nm / largest, direction_of_loading(history)
-    columns = [history.sign, *(way * np.abs(share) ** p for p in LOOP_POWERS)]
+    share, direction = history.torque_Nm / largest, direction_of_loading(history)
+    columns = [history.sign, *(direction * np.abs(share) ** p for p in LOOP_POWERS)]
     for unit in history.unit_slices:
         for values in (np.ones(len(unit)), np.linspace(-1, 1, len(unit))):
             own = np.zeros(len(history))

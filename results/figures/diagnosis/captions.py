@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
+
 CAPTIONS = {
     "measured_and_predicted": """
         Above, the measured angle on the simulated line; below, their difference. A difference inside
@@ -26,8 +28,8 @@ CAPTIONS = {
     "residual_unknown": """
         Residual of the best model, unnamed structure included. The structure that no cause
         explains lies in: {where}; the figure of the model's parts shows its course.""",
-    "envelope": """
-        The angle between −T and +T of each unit. The band holds 95 of 100 units that are as the
+    "envelope": f"""
+        The angle between −T and +T of each unit. The band holds {COVERED_WORDS} units that are as the
         design says; the design's clearances and stiffness do not explain a unit
         beyond it.""",
     "positions": """

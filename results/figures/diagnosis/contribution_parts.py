@@ -15,7 +15,7 @@ from flexspline.results.diagnosis.words import (
     sure_words,
     title_of,
 )
-from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData
+from flexspline.results.figures.diagnosis.seen import PlotChannel, SweepPictureData
 from flexspline.results.sentences import capital
 
 SHORT = 55
@@ -31,7 +31,7 @@ class ContributionPanel:
     owner: str
     title: str
     lines: tuple[str, ...]
-    channel: Channel
+    channel: PlotChannel
     view: Effect = "angle"
 
 

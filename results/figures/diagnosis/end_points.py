@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.figures.words import angle_title, fit
 from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 MOST_UNITS = 30
 """Units drawn, a figure of 14 inches; of more, those furthest out."""
@@ -28,14 +35,40 @@ def shown_units(analysis: EndPointAnalysis) -> list[UnitFinding]:
     return [u for u in units if u in worst]
 
 
+@contextmanager
+def _unit_rows(
+    path: Path, labels: Sequence[str], title: str, x_title: str, marker_scale: float = 1.0
+) -> Iterator[Axes]:
+    """A picture with a row for each unit, written where the block ends; right of the axes there is room."""
+    height = 1.55 + ROW * len(labels)
+    with styled():
+        figure = new_figure(8.0, height, DPI)
+        axes = figure.add_axes((0.13, 0.6 / height, 0.61, ROW * len(labels) / height))
+        yield axes
+        axes.set_ylim(len(labels) - 0.5, -0.5)
+        axes.set_yticks(range(len(labels)), labels)
+        axes.tick_params(axis="y", length=0)
+        axes.grid(axis="x")
+        axes.set_xlabel(angle_title(x_title))
+        titled(figure, 1 - 0.28 / height, title)
+        figure.legend(
+            loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
+            columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0, markerscale=marker_scale,
+        )  # fmt: skip
+        save_png(figure, path)
+
+
 def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
     """Lost motion of each unit, and what a good unit may show."""
     units = shown_units(analysis)
     names = plain_names(tuple(u.unit for u in units))
-    height = 1.55 + ROW * len(units)
-    with styled():
-        figure = new_figure(8.0, height, DPI)
-        axes = figure.add_axes((0.13, 0.6 / height, 0.61, ROW * len(units) / height))
+    torques = len(analysis.envelopes) > 1
+    labels = [
+        f"unit {n}" + (f", ± {u.torque_Nm:g} N·m" if torques else "")
+        for n, u in zip(names, units, strict=True)
+    ]
+    title = "Lost motion of each unit against the prediction"
+    with _unit_rows(path, labels, title, "angle between −T and +T", 0.8) as axes:
         ends, said = [], []
         for row, unit in enumerate(units):
             envelope = analysis.envelope_at(unit.torque_Nm)
@@ -43,7 +76,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             first = row == 0
             axes.barh(
                 row, high - low, left=low, height=0.66, color=PALETTE[0], alpha=0.15, lw=0,
-                label="95 of 100 good units" if first else None,
+                label=f"{COVERED_WORDS} good units" if first else None,
             )  # fmt: skip
             axes.plot(
                 [envelope.total_arcsec] * 2, [row - 0.33, row + 0.33], color=PALETTE[0], lw=2,
@@ -68,35 +101,17 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
-        fit(said, 0.235 * figure.bbox.width)
+        fit(said, 0.235 * axes.figure.bbox.width)
         room = 0.06 * (max(ends) - min(ends) + 1e-9)
         axes.set_xlim(min(ends) - room, max(ends) + room)
-        axes.set_ylim(len(units) - 0.5, -0.5)
-        torques = len(analysis.envelopes) > 1
-        axes.set_yticks(range(len(units)), [
-            f"unit {n}" + (f", ± {u.torque_Nm:g} N·m" if torques else "")
-            for n, u in zip(names, units, strict=True)
-        ])  # fmt: skip
-        axes.tick_params(axis="y", length=0)
-        axes.grid(axis="x")
-        axes.set_xlabel(angle_title("angle between −T and +T"))
-        titled(figure, 1 - 0.28 / height, "Lost motion of each unit against the prediction")
-        figure.legend(
-            loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
-            columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0, markerscale=0.8,
-        )  # fmt: skip
-        save_png(figure, path)
 
 
 def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
     """Where each unit's two ends lie, and its middle."""
     units = shown_units(analysis)
-    names = plain_names(tuple(u.unit for u in units))
-    height = 1.55 + ROW * len(units)
+    labels = [f"unit {n}" for n in plain_names(tuple(u.unit for u in units))]
     reach = analysis.mids.asymmetry_reach_arcsec
-    with styled():
-        figure = new_figure(8.0, height, DPI)
-        axes = figure.add_axes((0.13, 0.6 / height, 0.61, ROW * len(units) / height))
+    with _unit_rows(path, labels, "Where each unit's ends lie", "angle read") as axes:
         axes.axvspan(
             -reach,
             reach,
@@ -124,14 +139,3 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
                 f"middle {signed(unit.mid_arcsec, 1)} arcsec", (1.02, row),
                 xycoords=("axes fraction", "data"), va="center", fontsize=9.5, annotation_clip=False,
             )  # fmt: skip
-        axes.set_ylim(len(units) - 0.5, -0.5)
-        axes.set_yticks(range(len(units)), [f"unit {n}" for n in names])
-        axes.tick_params(axis="y", length=0)
-        axes.grid(axis="x")
-        axes.set_xlabel(angle_title("angle read"))
-        titled(figure, 1 - 0.28 / height, "Where each unit's ends lie")
-        figure.legend(
-            loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
-            columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0,
-        )  # fmt: skip
-        save_png(figure, path)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData, thinned
+from flexspline.results.figures.diagnosis.seen import PlotChannel, SweepPictureData, thinned
 from flexspline.results.figures.words import angle_title, thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -118,7 +118,7 @@ def _branch_legend(figure: Figure, shown: SweepPictureData) -> None:
 
 
 def _panel(
-    axes: Axes, shown: SweepPictureData, channel: Channel, left: np.ndarray, high: float
+    axes: Axes, shown: SweepPictureData, channel: PlotChannel, left: np.ndarray, high: float
 ) -> None:
     noise = 2 * shown.noise_arcsec
     axes.axhspan(-noise, noise, color="#e4e7ea", lw=0, zorder=0)

@@ -25,7 +25,7 @@ LONGEST_NAME = 12
 
 
 @dataclass(frozen=True)
-class Channel:
+class PlotChannel:
     """A recorded channel: its axis label, values (n,), and names of its levels where it has any."""
 
     key: str
@@ -106,23 +106,25 @@ class SweepPictureData:
         return less_zero(off, self.kept, self.history)
 
     @property
-    def channels(self) -> list[Channel]:
+    def channels(self) -> list[PlotChannel]:
         """Channels that were recorded and vary."""
         sweep, h = self.explained.prepared.sweep, self.history
-        found = [Channel("torque_Nm", CHANNELS["torque_Nm"].label, self.output_Nm)]
+        found = [PlotChannel("torque_Nm", CHANNELS["torque_Nm"].label, self.output_Nm)]
         if sweep.history.time_s is not None and h.time_s is not None:
             found.append(_time(h.time_s))
         if h.cycle.max() > 0:
-            found.append(Channel("cycle", CHANNELS["cycle"].label, sweep.own_cycle))
+            found.append(PlotChannel("cycle", CHANNELS["cycle"].label, sweep.own_cycle))
         if h.temperature_C is not None:
-            found.append(Channel("temperature_C", CHANNELS["temperature_C"].label, h.temperature_C))
+            found.append(
+                PlotChannel("temperature_C", CHANNELS["temperature_C"].label, h.temperature_C)
+            )
         if h.input_angle_deg is not None:
             found.append(
-                Channel("input_angle_deg", CHANNELS["input_angle_deg"].label, h.input_angle_deg)
+                PlotChannel("input_angle_deg", CHANNELS["input_angle_deg"].label, h.input_angle_deg)
             )
         if len(sweep.units) > 1:
             names = plain_names(sweep.units)
-            found.append(Channel("unit", CHANNELS["unit"].label, h.unit.astype(float), names))
+            found.append(PlotChannel("unit", CHANNELS["unit"].label, h.unit.astype(float), names))
         return [c for c in found if np.ptp(c.values) > 0]
 
     def channel_name(self, key: str) -> str:
@@ -130,7 +132,7 @@ class SweepPictureData:
         timed = self.explained.prepared.sweep.history.time_s is not None
         return key if timed else over_rows(key)
 
-    def channel(self, key: str) -> Channel:
+    def channel(self, key: str) -> PlotChannel:
         """The channel of that name; torque where it was not recorded."""
         return next((c for c in self.channels if c.key == key), self.channels[0])
 
@@ -152,10 +154,10 @@ def plain_names(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(n.replace("$", r"\$") if good else f"{i + 1}" for i, n in enumerate(names))
 
 
-def _time(seconds: np.ndarray) -> Channel:
+def _time(seconds: np.ndarray) -> PlotChannel:
     passed = seconds - seconds.min()
     longest = passed.max()
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if longest > 3 * size:
-            return Channel("time_s", f"time in {unit}", passed / size)
-    return Channel("time_s", CHANNELS["time_s"].label, passed)
+            return PlotChannel("time_s", f"time in {unit}", passed / size)
+    return PlotChannel("time_s", CHANNELS["time_s"].label, passed)

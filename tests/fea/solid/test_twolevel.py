@@ -8,8 +8,10 @@ import tomllib
 from dataclasses import replace
 from math import sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import psutil
 import pytest
 from example_files import EXAMPLES
 
@@ -207,6 +209,22 @@ def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) ->
     assert memory.container_free_bytes(tmp_path) == 8000 - 5000 + 1500
     (tmp_path / "memory.max").write_text("max\n", encoding="ascii")
     assert memory.container_free_bytes(tmp_path) == float("inf")
+
+
+def test_memory_left_is_what_the_machine_can_give_and_not_all_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On every system, as psutil counts it; of macOS the whole memory was taken for free before."""
+    for limit in ("container_free_bytes", "free_address_space_bytes"):
+        monkeypatch.setattr(memory, limit, lambda: float("inf"))
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=3, total=8))
+    assert memory.available_bytes() == 3
+
+    def unread() -> None:
+        raise FileNotFoundError("/proc/meminfo")
+
+    monkeypatch.setattr(psutil, "virtual_memory", unread)
+    assert memory.available_bytes() == float("inf")
 
 
 def test_memory_left_is_bounded_by_the_address_space() -> None:

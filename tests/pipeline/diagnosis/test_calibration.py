@@ -15,7 +15,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero
@@ -32,7 +32,7 @@ def raced(compliance: float, gap: float) -> GaussianEvidence:
     """A record that lacks nothing but so many standard deviations of stiffness and gap."""
     history = swept(cycles=2)
     columns = design_matrix(
-        Rig(PREDICTION, history), {"clearance_offset": known_causes()["clearance_offset"]}
+        FitContext(PREDICTION, history), {"clearance_offset": known_causes()["clearance_offset"]}
     )
     target = columns.base[:, 1:3] @ (np.array([compliance, gap]) * columns.base_prior[1:3])
     kept = np.abs(history.torque_Nm) > 0.07 * LARGEST

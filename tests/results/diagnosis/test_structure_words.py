@@ -7,7 +7,7 @@ from typing import get_args
 import pytest
 from histories import sweep
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import Leaping, Leaps
@@ -18,7 +18,7 @@ from flexspline.results.diagnosis.advice import DOING, doing_words
 from flexspline.results.diagnosis.shortage_words import shortage_words
 from flexspline.results.diagnosis.structure_words import ANYWHERE, FORMS, words_of
 
-RIG = Rig(Prediction(10.0, 0.2, 60.0, 5.0), sweep(units=2))
+RIG = FitContext(Prediction(10.0, 0.2, 60.0, 5.0), sweep(units=2))
 
 
 def test_every_kind_of_form_has_words() -> None:

@@ -10,7 +10,7 @@ import pytest
 from histories import LARGEST, PREDICTION, shape_of, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext
 from flexspline.pipeline.diagnosis.model.shape_check import CHANNELS, channels_needed, fault_of
 
 UNITS = {
@@ -30,7 +30,7 @@ UNITS = {
 }
 """The contract's table of sweep causes."""
 EVERY = list(known_causes().values())
-RIG = Rig(PREDICTION, sweep())
+RIG = FitContext(PREDICTION, sweep())
 SEARCHED = {"torque_offset"}
 """Found where the gap is crossed, not by shapes."""
 OTHERS = {
@@ -46,7 +46,7 @@ OTHERS = {
 each_cause = pytest.mark.parametrize("cause", EVERY, ids=lambda c: c.id)
 
 
-def shapes(cause: Cause, rig: Rig = RIG):
+def shapes(cause: Cause, rig: FitContext = RIG):
     return [*cause.shapes(rig), *cause.searched_apart] or [{}] * (cause.id in SEARCHED)
 
 
@@ -114,7 +114,7 @@ def test_units_do_not_know_of_each_other(cause: Cause) -> None:
 @pytest.mark.parametrize("channel", CHANNELS)
 def test_no_shapes_without_the_channel(cause: Cause, channel: str) -> None:
     without = replace(sweep(), **{channel: None})
-    for shape in cause.shapes(Rig(PREDICTION, without)):
+    for shape in cause.shapes(FitContext(PREDICTION, without)):
         assert np.isfinite(cause.columns(shape, without)).all()
     for shape in shapes(cause):
         k = cause.columns(shape, RIG.history).shape[1]
@@ -127,7 +127,7 @@ def test_no_shapes_without_the_channel(cause: Cause, channel: str) -> None:
 def test_every_shape_may_be_read_back(cause: Cause) -> None:
     """The check of model files refuses nothing that a cause tries, on records of many kinds."""
     for history in (*OTHERS.values(), sweep(cycles=9), sweep(rows=200, hold=50)):
-        for shape in cause.shapes(Rig(PREDICTION, history)):
+        for shape in cause.shapes(FitContext(PREDICTION, history)):
             k = cause.columns(shape, history).shape[1]
             assert fault_of(cause, shape, k) is None
     k = cause.columns(shapes(cause)[0], RIG.history).shape[1]
@@ -146,7 +146,7 @@ def test_what_may_not_be_negative_has_a_magnitude_of_one_sign(cause: Cause) -> N
 # ---- magnitudes, each by a closed form; compliance c = 10 arcsec per N·m, T = 2 N·m
 
 
-def magnitude(cause_id: str, shape: dict, *amplitudes: float, rig: Rig = RIG) -> float:
+def magnitude(cause_id: str, shape: dict, *amplitudes: float, rig: FitContext = RIG) -> float:
     return known_causes()[cause_id].magnitude([Element(shape, amplitudes)], rig)
 
 
@@ -250,7 +250,7 @@ def test_a_steepening_twist_s_rate_dependence_is_that_of_the_record_s_rates() ->
     steps = np.where(history.cycle == 0, LARGEST / 100 / 0.2, LARGEST / 100 / 0.4)
     history = replace(history, time_s=np.cumsum(steps))
     shape = shape_of("rate_dependence", history, exponent=2.0, lag_s=0.01, rate_Nm_per_s=0.2)
-    found = rate.magnitude((Element(shape, (15.0,)),), Rig(PREDICTION, history))
+    found = rate.magnitude((Element(shape, (15.0,)),), FitContext(PREDICTION, history))
     assert found == pytest.approx(
         3 / 0.2**2 * 0.36, rel=0.02
     )  # corners of the torque are 2 % of the rows

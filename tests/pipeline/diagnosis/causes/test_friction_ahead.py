@@ -15,11 +15,15 @@ from histories import PREDICTION, sweep
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE, Doubt, deviation_of
+from flexspline.pipeline.diagnosis.model.doubt import (
+    CARRIED_UNSURE,
+    PredictionUncertainty,
+    deviation_of,
+)
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
@@ -93,7 +97,7 @@ def test_the_gap_is_crossed_at_the_friction_torque_each_way() -> None:
 
 def test_the_loop_s_width_is_what_elasticity_makes_of_it() -> None:
     friction = known_causes()["friction_hysteresis"]
-    rig = replace(Rig(PREDICTION, sweep()), measured=(12.0, 0.0))
+    rig = replace(FitContext(PREDICTION, sweep()), measured=(12.0, 0.0))
     width = friction.magnitude([AHEAD], rig)
     assert width == pytest.approx(2 * FRICTION * 12.0, rel=1e-3)  # the round corner
 
@@ -166,7 +170,7 @@ def test_deviation_of_a_prediction() -> None:
     still = np.zeros((4, 4))
     still[3, 3] = 0.02**2  # of the friction torque; zero, compliance and gap are known
     span = span_of(along(LOOP))
-    plain = Doubt(0.5, 0.0, np.zeros((4, 4)), span)
+    plain = PredictionUncertainty(0.5, 0.0, np.zeros((4, 4)), span)
     read = along(LOOP)
     far = slice(260, None)  # after the first turn, where the friction's state is known
     std = deviation_of(MODEL, replace(plain, covariance=still), read, ("",)).std_arcsec

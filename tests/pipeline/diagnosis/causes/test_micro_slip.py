@@ -14,7 +14,7 @@ from histories import PREDICTION, shape_of, sweep
 
 import flexspline
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import SINGLE, FrictionHysteresis
 from flexspline.pipeline.diagnosis.causes.micro_slip import POWER, POWERS
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -57,7 +57,7 @@ def test_masing_from_a_reversal_on(power: float) -> None:
 @pytest.mark.parametrize("power", [p for p in POWERS if p <= 2.5])
 def test_the_loop_grows_as_the_power_and_is_widest_at_zero(power: float) -> None:
     """By Masing: 2 − 4·2^−p at T = 0 of a loop of amplitude 1."""
-    rig = Rig(PREDICTION, sweep())
+    rig = FitContext(PREDICTION, sweep())
     wide = (Element(element(power), (10.0,)),)
     assert FRICTION.magnitude(wide, rig) == pytest.approx(
         10 * (2 - 4 * 2**-power), abs=10 * 4 * NEAR
@@ -77,7 +77,7 @@ def test_where_the_chord_is_the_simulation_s_it_is_taken_off() -> None:
 def test_friction_that_grows_with_torque_is_widest_where_torque_is_high() -> None:
     """Of one threshold r: 2a·|T|/L, and 0 at T = 0; until L − 2r, where the loop begins to close."""
     shape = shape_of("friction_hysteresis", spread=SINGLE, loaded=1, held=1, start=0)
-    rig = Rig(PREDICTION, sweep())
+    rig = FitContext(PREDICTION, sweep())
     r = shape["threshold_Nm"]
     loop = (Element(shape, (6.0,)),)
     assert FRICTION.magnitude(loop, rig) == pytest.approx(0.0, abs=1e-9)

@@ -12,7 +12,7 @@ from histories import PREDICTION
 
 import flexspline
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE
 from flexspline.pipeline.diagnosis.measurement.history import History
 
@@ -64,7 +64,9 @@ def test_where_torque_rests_the_loop_turns_at_the_end_of_the_rest() -> None:
     none = np.zeros(len(true), int)
     history = History(read, none, none, np.arange(len(true), dtype=float))
     friction = known_causes()["friction_hysteresis"]
-    (shape,) = (s for s in friction.shapes(Rig(PREDICTION, history)) if s.get(SQUARE) and s["held"])
+    (shape,) = (
+        s for s in friction.shapes(FitContext(PREDICTION, history)) if s.get(SQUARE) and s["held"]
+    )
     column = friction.columns(shape, history)[:, 0]
     way = np.sign(np.diff(true, append=true[-1]))
     for rests in (np.arange(k + 85, k + 115) for k in range(0, len(true) - 240, 240)):

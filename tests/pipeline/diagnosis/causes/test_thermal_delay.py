@@ -13,7 +13,7 @@ from example_files import EXAMPLES
 from histories import PREDICTION, sweep
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import ThermalClearance
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
@@ -97,7 +97,7 @@ def test_a_gear_off_at_the_start_comes_back(way: str, side: float, stages: int) 
 
 def test_gap_and_temperature_alone_are_no_curve() -> None:
     """A gap linear in temperature leaves nothing in the term for one that is not."""
-    rig = Rig(PREDICTION, sweep())
+    rig = FitContext(PREDICTION, sweep())
     curved = next(c for _, what, c in over_temperature(rig) if what == UnnamedForm("bent_gap"))[
         :, 0
     ]

@@ -12,7 +12,7 @@ from example_files import EXAMPLES
 from histories import PREDICTION, sweep
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import ThermalClearance
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
@@ -63,7 +63,7 @@ def deviations(found: Diagnosis) -> float:
 
 def test_no_lag_has_even_odds() -> None:
     """In equal shares of the shapes it had one chance in twenty."""
-    cause, rig = ThermalClearance(), Rig(PREDICTION, sweep())
+    cause, rig = ThermalClearance(), FitContext(PREDICTION, sweep())
     shapes = cause.shapes(rig)
     shares = [exp(cause.log_share(s, len(shapes))) for s in shapes]
     assert sum(shares) == pytest.approx(1.0)

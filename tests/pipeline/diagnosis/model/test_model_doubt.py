@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.doubt import (
     BEYOND_THE_EDGE,
     Deviation,
-    Doubt,
+    PredictionUncertainty,
     deviation_of,
     parameter_columns,
     parameter_count,
@@ -38,11 +38,13 @@ RECORD = sweep()
 COVARIANCE = np.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.0], [0.0, 0.0, 0.16]])
 
 
-def doubt(covariance: np.ndarray = COVARIANCE, **other: float) -> Doubt:
-    return replace(Doubt(0.3, 0.0, covariance, span_of(RECORD)), **other)
+def doubt(covariance: np.ndarray = COVARIANCE, **other: float) -> PredictionUncertainty:
+    return replace(PredictionUncertainty(0.3, 0.0, covariance, span_of(RECORD)), **other)
 
 
-def std(history: History, of: Doubt | None = None, model: ExtendedModel = PLAIN) -> np.ndarray:
+def std(
+    history: History, of: PredictionUncertainty | None = None, model: ExtendedModel = PLAIN
+) -> np.ndarray:
     return deviation_of(model, of or doubt(), history, ("",)).std_arcsec
 
 

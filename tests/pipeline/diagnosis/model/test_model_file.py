@@ -10,7 +10,7 @@ import pytest
 from histories import PREDICTION, shape_of, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile, Provenance, read_model_file
@@ -62,7 +62,7 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
 
 
 def test_every_cause_s_every_shape_makes_the_round_trip(tmp_path: Path) -> None:
-    rig = Rig(PREDICTION, sweep())
+    rig = FitContext(PREDICTION, sweep())
     elements = {}
     for cause in known_causes().values():
         shapes = cause.shapes(rig) or [{}]

@@ -8,7 +8,7 @@ from histories import LARGEST, PREDICTION, shape_of, sweep
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import GROWING
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
@@ -36,7 +36,7 @@ def test_the_loop_widens_with_that_power_of_torque(growth: float) -> None:
     # both torques are far from a turn, where the element has slipped
     assert width_at(1.5, growth) / width_at(0.5, growth) == pytest.approx(3.0**growth)
     assert FRICTION.magnitude(
-        [Element({**SHAPE, "growth": growth}, np.array([1.0]))], Rig(PREDICTION, HISTORY)
+        [Element({**SHAPE, "growth": growth}, np.array([1.0]))], FitContext(PREDICTION, HISTORY)
     ) == pytest.approx(0.0, abs=1e-12)
 
 
@@ -49,7 +49,7 @@ def test_tuning_finds_the_power() -> None:
     true = {**SHAPE, "growth": 1.6}
     angle = 5.0 * FRICTION.columns(true, HISTORY)[:, 0]
     angle = angle + np.random.default_rng(5).normal(0, 0.05, len(angle))
-    columns = design_matrix(Rig(PREDICTION, HISTORY), {FRICTION.id: FRICTION})
+    columns = design_matrix(FitContext(PREDICTION, HISTORY), {FRICTION.id: FRICTION})
     kept = np.abs(HISTORY.torque_Nm) > 0.05 * LARGEST
     now = gaussian_evidence(columns, angle, kept, Noise(0.05**2, 0.0, 0.5))
     start = next(i for i, t in enumerate(columns.terms) if dict(t.shape) == SHAPE)

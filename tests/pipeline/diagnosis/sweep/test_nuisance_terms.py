@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from histories import PREDICTION, sweep
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NEW_SHARE, nuisance_terms
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling
@@ -34,7 +34,9 @@ def test_an_even_curve_is_even(cycles: float) -> None:
     zero = np.zeros(len(time), int)
     history = History(torque, zero, time.astype(int), 20.0 * time)
     (even,) = [
-        t.columns for t in nuisance_terms(Rig(PREDICTION, history)) if t.form.kind == "even_curve"
+        t.columns
+        for t in nuisance_terms(FitContext(PREDICTION, history))
+        if t.form.kind == "even_curve"
     ]
     # torque without its noise is that of parabolas through 15 rows, of some 100 of a wave: to 1e-4
     assert left_of(torque**2, np.hstack([even, calibration(history)])) < 1e-3
@@ -45,7 +47,9 @@ def test_no_step_in_time_is_a_unit_s_zero_in_the_rows_that_count() -> None:
     history = replace(sweep(cycles=2, units=3, rows=240, hold=0), temperature_C=None)
     counted = ~settling(history)
     assert 0 < counted.sum() < len(history)
-    steps = [t.columns for t in nuisance_terms(Rig(PREDICTION, history)) if t.form.kind == "step"]
+    steps = [
+        t.columns for t in nuisance_terms(FitContext(PREDICTION, history)) if t.form.kind == "step"
+    ]
     assert len(steps) > 30
     fixed = calibration(history)[counted]
     for columns in steps:

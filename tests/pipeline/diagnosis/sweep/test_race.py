@@ -11,7 +11,7 @@ from histories import sweep as swept
 from scipy.stats import multivariate_normal
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -33,7 +33,7 @@ def raced(history: History, target: np.ndarray, noise: float = SIGMA) -> Gaussia
         k: known_causes()[k]
         for k in ("friction_hysteresis", "stiffness_hardening", "direction_asymmetry")
     }
-    columns = design_matrix(Rig(PREDICTION, history), known)
+    columns = design_matrix(FitContext(PREDICTION, history), known)
     kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
     return gaussian_evidence(columns, target, kept, Noise(noise**2, 0.0, 0.5))
 
@@ -64,7 +64,7 @@ def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
         known_causes()["friction_hysteresis"],
         known_causes()["direction_asymmetry"],
     )
-    rig = Rig(PREDICTION, history)
+    rig = FitContext(PREDICTION, history)
     angle = 4.0 * friction.columns(friction.shapes(rig)[7], history)[:, 0]
     angle = angle + 1.5 * asymmetry.columns(asymmetry.shapes(rig)[0], history)[:, 0]
     now = raced(history, angle + np.random.default_rng(2).normal(0, SIGMA, len(angle)))
@@ -85,7 +85,9 @@ def test_tuning_finds_the_knee() -> None:
     history = swept(cycles=3, rows=120)
     hardening = known_causes()["stiffness_hardening"]
     shape = next(
-        s for s in hardening.shapes(Rig(PREDICTION, history)) if s["law"] == 0 and s["held"] == 0
+        s
+        for s in hardening.shapes(FitContext(PREDICTION, history))
+        if s["law"] == 0 and s["held"] == 0
     )
     true = {**shape, "parameter": 0.37}
     angle = 8.0 * hardening.columns(true, history)[:, 0]
@@ -148,7 +150,9 @@ def test_an_owner_may_give_way_once_the_set_is_whole() -> None:
     """From a wrong cause, kept because the set may not grow, to the true one."""
     history = swept(cycles=2)
     asymmetry = known_causes()["direction_asymmetry"]
-    angle = 3.0 * asymmetry.columns(asymmetry.shapes(Rig(PREDICTION, history))[0], history)[:, 0]
+    angle = (
+        3.0 * asymmetry.columns(asymmetry.shapes(FitContext(PREDICTION, history))[0], history)[:, 0]
+    )
     now = raced(history, angle + np.random.default_rng(2).normal(0, SIGMA, len(angle)))
     wrong = next(i for i, t in enumerate(now.terms) if t.owner == "stiffness_hardening")
     search = Search(now, lambda t: t.cause is not None)

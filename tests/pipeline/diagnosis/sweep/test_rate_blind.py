@@ -12,7 +12,7 @@ from histories import LARGEST, PREDICTION, shape_of, sweep
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.decision import EVEN_ODDS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
@@ -69,7 +69,7 @@ def test_only_a_twist_that_follows_the_rate_does(follows: bool) -> None:
     twist = rate.columns(lag, VARIED if follows else blind)[:, 0]
     angle = angle + 2.0 * twist / twist.std()
     angle += np.random.default_rng(4).normal(0, NOISE, len(angle))
-    columns = design_matrix(Rig(PREDICTION, VARIED), known)
+    columns = design_matrix(FitContext(PREDICTION, VARIED), known)
     kept = np.abs(VARIED.torque_Nm) > 0.1
     now = gaussian_evidence(columns, angle, kept, Noise(NOISE**2, 0.0, 0.5))
     chosen = [

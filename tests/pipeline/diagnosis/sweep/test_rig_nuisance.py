@@ -13,7 +13,7 @@ from histories import PREDICTION, sweep
 from read_sweep import as_read
 from scipy.signal import lsim, lti
 
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -114,7 +114,7 @@ def test_a_ring_after_a_corner_is_among_the_columns() -> None:
         t = TURNING.time_s - c.time_s
         wave = np.exp(-damping * omega * t) * np.sin(omega * np.sqrt(1 - damping**2) * t)
         rung += c.change * np.where(t >= 0, wave, 0.0)
-    pairs = [columns for _, _, columns in ringing(Rig(PREDICTION, TURNING))]
+    pairs = [columns for _, _, columns in ringing(FitContext(PREDICTION, TURNING))]
     left = min(
         float(np.linalg.norm(rung - p @ np.linalg.lstsq(p, rung, rcond=None)[0])) for p in pairs
     )
@@ -129,7 +129,7 @@ def test_a_lock_that_follows_beyond_its_capacity_is_among_the_columns() -> None:
     for k, torque in enumerate(HELD.torque_Nm):
         at = min(max(at, torque - capacity), torque + capacity)
         way[k] = at
-    columns = [c[:, 0] for _, _, c in giving_way(Rig(PREDICTION, HELD))]
+    columns = [c[:, 0] for _, _, c in giving_way(FitContext(PREDICTION, HELD))]
     assert min(np.abs(c - way).max() for c in columns) < 1e-12
 
 

@@ -11,7 +11,7 @@ from histories import LARGEST, PREDICTION, sweep
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
@@ -29,7 +29,7 @@ def spring_left_out(share: float) -> GaussianEvidence:
     """A compliance that is larger than simulated; no noise."""
     history = sweep(cycles=3, hold=0)
     known = {"series_compliance": known_causes()["series_compliance"]}
-    columns = design_matrix(Rig(PREDICTION, history), known)
+    columns = design_matrix(FitContext(PREDICTION, history), known)
     target = share * PREDICTION.compliance * history.torque_Nm
     kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
     return gaussian_evidence(columns, target, kept, Noise(0.01, 0.0, 0.5))
@@ -60,7 +60,7 @@ def test_no_two_metals_make_a_gap_grow_by_a_temperature_that_none_saw(metals: fl
     per_K = metals * 2 * STEEL_ALUMINIUM * ARCSEC_PER_RAD
     unsettled = {"lag_s": 10.0, "longest_lag_s": 20.0, "colder_K": 1.0, "most_off_K": 3.0}
     seen = {"lag_s": 0.0, "longest_lag_s": 20.0}
-    rig = Rig(PREDICTION, sweep())
+    rig = FitContext(PREDICTION, sweep())
     assert cause.plausible((Element(unsettled, (per_K,)),), rig) == (metals == 1.0)
     assert cause.plausible((Element(unsettled, (-per_K,)),), rig) == (metals == 1.0)
     assert cause.plausible((Element(seen, (per_K,)),), rig)

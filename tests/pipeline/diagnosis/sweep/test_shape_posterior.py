@@ -8,7 +8,7 @@ from histories import PREDICTION, sweep
 from scipy.optimize import curve_fit
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence, with_shapes
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
 
 DRIFT = "sensor_drift"
 HISTORY = sweep(cycles=3, rows=150, hold=0)
-RIG = Rig(PREDICTION, HISTORY)
+RIG = FitContext(PREDICTION, HISTORY)
 NOISE = 1.0
 EXPONENT, ARCSEC = 0.8, 12.0
 """Of the true drift, θ = 12″·(t/duration)^0.8: strong enough that priors add nothing to what 450 rows say."""

@@ -9,7 +9,7 @@ import pytest
 from histories import LARGEST, PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
@@ -24,7 +24,7 @@ NOISE = 0.3
 
 def fitted(added: np.ndarray, *causes: str) -> SweepFit:
     """One shape of each cause, fitted to what a gear adds to the simulation."""
-    columns = design_matrix(Rig(PREDICTION, HISTORY), {c: known_causes()[c] for c in causes})
+    columns = design_matrix(FitContext(PREDICTION, HISTORY), {c: known_causes()[c] for c in causes})
     kept = np.abs(HISTORY.torque_Nm) > 0.07 * LARGEST
     evidence = gaussian_evidence(columns, added, kept, Noise(NOISE**2, 0.0, 0.5))
     first = [next(i for i, t in enumerate(evidence.terms) if t.owner == c) for c in causes]
@@ -33,7 +33,7 @@ def fitted(added: np.ndarray, *causes: str) -> SweepFit:
 
 def friction(width_arcsec: float) -> np.ndarray:
     """A loop of the first shape that friction tries."""
-    columns = design_matrix(Rig(PREDICTION, HISTORY), {FRICTION: known_causes()[FRICTION]})
+    columns = design_matrix(FitContext(PREDICTION, HISTORY), {FRICTION: known_causes()[FRICTION]})
     one = columns.all[:, columns.terms[0].at].sum(axis=1)
     return width_arcsec / 2 * one
 
@@ -68,7 +68,7 @@ def test_hardening_of_one_is_none() -> None:
 def test_an_amplitude_of_waves_is_no_question_of_its_deviation() -> None:
     """At few positions a sum of harmonics is known and none of them; that there is one, its evidence says."""
     few = replace(HISTORY, input_angle_deg=90.0 * (HISTORY.cycle % 2))
-    columns = design_matrix(Rig(PREDICTION, few), {WAVE: known_causes()[WAVE]})
+    columns = design_matrix(FitContext(PREDICTION, few), {WAVE: known_causes()[WAVE]})
     two = next(i for i, t in enumerate(columns.terms) if len(t.shape) == 2)
     assert few.input_angle_deg is not None
     added = 20.0 * np.sin(np.radians(few.input_angle_deg))

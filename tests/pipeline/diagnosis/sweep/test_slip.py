@@ -23,7 +23,7 @@ def test_slip_under_both_directions_is_seen_and_sized() -> None:
     """A load holds 8 rows at 2 N·m and 3 or 4 rows beyond 80 % on the way up and down: 14 to 16 steps."""
     found = slip_of(RECORD, TWIST + 20 * coulomb(0.8))
     assert found is not None
-    assert 14 * 20 <= found.way_arcsec <= 17 * 20
+    assert 14 * 20 <= found.slip_arcsec <= 17 * 20
 
 
 def test_slip_one_way_only_is_seen() -> None:

@@ -9,7 +9,7 @@ import pytest
 from histories import LARGEST, PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import (
@@ -32,7 +32,7 @@ def raced(growth_arcsec: float) -> GaussianEvidence:
     torque = WARMING.torque_Nm
     added = 4.0 * torque + growth_arcsec * WARMING.cycle / 5 * np.sign(torque) / 2
     known = {k: known_causes()[k] for k in ("series_compliance", *GROWTH)}
-    columns = design_matrix(Rig(PREDICTION, WARMING), known)
+    columns = design_matrix(FitContext(PREDICTION, WARMING), known)
     return gaussian_evidence(columns, added, np.abs(torque) > 0.07 * LARGEST, Noise(1.0, 0.0, 0.5))
 
 
