@@ -116,6 +116,16 @@ def test_the_solid_model_with_its_holes_has_the_same_peak(finished_cup: Finished
     assert solid.mises_MPa == pytest.approx(under_test.ellipse_peak(part).mises_MPa, rel=0.015)
 
 
+def test_a_peak_on_a_mesh_that_is_not_refined_there_says_so(
+    finished_cup: FinishedRun, tmp_path: Path
+) -> None:
+    """A mesh of fTetWild's is that of K, and has a peak that a finer one may move by a tenth."""
+    assert not solid_ellipse(model(CUP, finished_cup.cache)).peak.shortfall
+    unswept = {"solver.mesher": "tetwild", "solver.tolerance_pct": 5.0}
+    peak = solid_ellipse(model(CUP.changed(unswept), tmp_path)).peak
+    assert "not refined at the peak" in peak.shortfall.words
+
+
 def test_the_stress_is_of_the_stroke_that_is_stated(tmp_path: Path) -> None:
     """Linear: a plug that is a quarter larger bends the rim by a quarter more."""
     plain = CUP.changed({"flexspline.bolt_count": 0, "shaft.bolt_count": 0})
