@@ -1,4 +1,4 @@
-"""An encoder's steps are said where its rounding is most of the noise; a file's last digits are no encoder."""
+"""An encoder's steps are said where its rounding is most of the noise; a file's last digit is no encoder."""
 
 from __future__ import annotations
 
