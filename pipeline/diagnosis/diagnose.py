@@ -10,7 +10,7 @@ the rest. Its steps are in `identification.py`.
 | evidence of a set of them | `evidence.py` | `evidence.py` | `evidence.py` | `fitted_input.py` |
 | race of sets | `race.py` | `race.py` | `race.py` | `pairs.py` |
 | causes, rivals, verdict | `identification.py` | `decide.py` | `decide.py` | `identification.py` |
-| next measurement | `next_measurement.py` | `next_measurement.py` | `next_measurement.py` | `identification.py` |
+| next measurement | `next_measurement.py` | the same | the same | `identification.py` |
 
 The rules of the verdict for the first three are in `decision.py`.
 """
