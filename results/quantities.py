@@ -159,7 +159,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "equivalent_ring_difference_pct",
         "equivalent_ring_difference_pct",
         "%",
-        "That plain ring, bending, over the rim",
+        "That plain ring (bending), thicker than the rim by",
         decimals=1,
     ),
     *(
