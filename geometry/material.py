@@ -28,7 +28,7 @@ class ElasticMaterial(DesignTable):
 
 
 class Material(ElasticMaterial):
-    """That of a part whose stress and mass are computed, too."""
+    """Elastic constants, fatigue limit and density."""
 
     name: str = Field(min_length=1, max_length=200, description="for the report")
     poissons_ratio: Annotated[float, within(ranges.POISSONS_RATIO)] = Field(description="1, ν")

@@ -36,8 +36,8 @@ def spread_sentence(backlash: Backlash) -> str:
     return f"one standard deviation of the sum is {said}{without}"
 
 
-def plus_minus(value: float, std: float, unit: str) -> str:
-    """``3 ± 1 µm``; without a standard deviation ``3 µm``."""
+def as_stated(value: float, std: float, unit: str) -> str:
+    """As the design file has them, not rounded: ``3 ± 1 µm``; without a standard deviation ``3 µm``."""
     return f"{value:g} ± {std:g} {unit}" if std else f"{value:g} {unit}"
 
 

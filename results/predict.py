@@ -24,14 +24,37 @@ def predict(
 
     Examples
     --------
+    A model without causes, as `diagnose` writes it: 10 arcsec per N·m and a gap of 60 arcsec give
+    ±(10 + 60/2) arcsec at ±1 N·m.
+
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from flexspline import FlexsplineError, predict
-    >>> try:
-    ...     predict("no-such-model.toml", "examples/measured/xb1-40-sweep.csv")
-    ... except FlexsplineError as fault:
-    ...     print(fault)
-    no-such-model.toml: no such file
+    >>> from flexspline import predict
+    >>> written = '''
+    ... format = 1
+    ... [provenance]
+    ... program = "flexspline 0.1.0"
+    ... design = "XB1-40 cup"
+    ... measurement = "sweep.csv"
+    ... measurement_sha256 = ""
+    ... verdict = "consistent"
+    ... K_b_Nm_per_rad = 31312.0
+    ... K_e_Nm_per_rad = 43275.0
+    ... time_recorded = false
+    ... [calibrated]
+    ... compliance_arcsec_per_Nm = 10.0
+    ... gap_arcsec = 60.0
+    ... [[unit]]
+    ... name = ""
+    ... zero_arcsec = 0.0
+    ... '''
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     model, history = Path(folder, "extended_model.toml"), Path(folder, "history.csv")
+    ...     _ = model.write_text(written, encoding="utf-8")
+    ...     _ = history.write_text("torque_Nm\\n1\\n-1\\n", encoding="utf-8")
+    ...     found = predict(model, history)
+    >>> found.angle_arcsec.tolist()
+    [40.0, -40.0]
     """
     from flexspline.pipeline.diagnosis.model.model_file import read_model_file
     from flexspline.pipeline.diagnosis.model.predict import predict_file

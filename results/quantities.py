@@ -1,7 +1,8 @@
 """The one table of quantities: result.json key, unit, long name, symbol and how it is printed.
 
-JSON, CSV, charts and the report all read it: no other file names a figure of result.json. The whole gear's
-part of it stands in `gear_quantities.py`.
+Console, CSV, charts and reports take a figure's unit, name and format from here and name it by its key alone.
+Keys that hold no printed figure (places, sentences) are written by `records.py`; docs/contract.md lists all.
+The whole gear's part of the table stands in `gear_quantities.py`.
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "equivalent_ring_difference_pct",
         "equivalent_ring_difference_pct",
         "%",
-        "That plain ring, bending, over the rim",
+        "That plain ring (bending), thicker than the rim by",
         decimals=1,
     ),
     *(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.pipeline.stress_limits import ON_ELLIPSE, PEAK_OF, limits_passed
 from flexspline.results.gear_words import gear_warnings
 from flexspline.results.limit_words import load_beyond, passed_line
 from flexspline.results.numbers import beyond
@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     from flexspline.geometry.design import Design
     from flexspline.pipeline.analysis import RunResult
     from flexspline.pipeline.stiffnesses import Stiffnesses
+
+PEAK_KEYS = {
+    **{case: f"{peak}_mises_MPa" for case, peak in PEAK_OF.items()},
+    ON_ELLIPSE: f"{ON_ELLIPSE}_mises_MPa",
+    "half_seat_peak": f"{ON_ELLIPSE}_half_seat_mises_MPa",
+}
+"""Keys in result.json of peak stresses, by the names under which they are solved; all else is a stiffness."""
 
 
 def shortfalls(
@@ -88,12 +95,8 @@ def _missing(found: Stiffnesses) -> Iterator[str]:
         if name == "gear":
             yield f"Whole gear: not found, {why}"
             continue
-        peak = PEAK_OF.get(name, name)
-        if peak in said:  # a field and its peak fail together
+        key = PEAK_KEYS.get(name, f"{name}_Nm_per_rad")
+        if key in said:  # a field and its peak fail together
             continue
-        said.add(peak)
-        if peak == "half_seat_peak":
-            key = "wave_generator_peak_half_seat_mises_MPa"
-        else:
-            key = f"{peak}_mises_MPa" if peak.endswith("_peak") else f"{peak}_Nm_per_rad"
+        said.add(key)
         yield f"{quantity(key).name}: not found, {why}"

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import ast
 import doctest
 import importlib
+import json
 import re
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
-from finished_run import finished_run
+from finished_run import FinishedRun, finished_run
+from in_process import flexspline
 from opengl import why_no_pictures
 
 from flexspline.geometry.load import load_design
@@ -25,6 +29,10 @@ MODULES = sorted(
     for p in (ROOT / room).rglob("*.py")
     if ">>>" in p.read_text(encoding="utf-8")
 )
+CONTRACT = ROOT / "docs" / "contract.md"
+WRITERS = ("records", "gear", "diagnosis/record", "diagnosis/data_used", "diagnosis/gear_inputs",
+           "diagnosis/reading")  # fmt: skip
+"""In results/: what writes result.json, gear.json and diagnosis.json."""
 DESIGNS = sorted((EXAMPLES).glob("*.toml"))
 MARKS = {
     "keyed-shaft": pytest.mark.cad,  # its keyway is cut by the CAD kernel
@@ -48,6 +56,12 @@ def test_the_drawings_of_the_rooms_are_the_code_s() -> None:
     drawn = runpy.run_path(str(ROOT / "docs" / "make_architecture.py"))
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
     assert drawn["written"](page) == page, "run  python3 docs/make_architecture.py"
+
+
+def test_the_contract_s_tables_of_figures_are_the_program_s() -> None:
+    made = runpy.run_path(str(ROOT / "docs" / "make_record_keys.py"))
+    page = CONTRACT.read_text(encoding="utf-8")
+    assert made["written"](page) == page, "run  python3 docs/make_record_keys.py"
 
 
 def test_readme_opens_with_two_commands_in_order() -> None:
@@ -75,7 +89,7 @@ def test_readme_names_every_command() -> None:
 def test_the_contract_names_every_command_and_every_key_of_a_design() -> None:
     from flexspline.results.cli import app
 
-    text = (ROOT / "docs" / "contract.md").read_text(encoding="utf-8")
+    text = CONTRACT.read_text(encoding="utf-8")
     for command in app.registered_commands:
         assert f"`flexspline {command.callback.__name__}" in text
     schema = json_schema()
@@ -84,6 +98,75 @@ def test_the_contract_names_every_command_and_every_key_of_a_design() -> None:
     assert len(keys) > 60
     named = set(re.findall(r"\w+", text))
     assert keys <= named, keys - named
+
+
+def listed_keys(record: str) -> list[str]:
+    """The keys of a record as section 5 of the contract lists them, nested ones joined by dots."""
+    section = CONTRACT.read_text(encoding="utf-8").split(f"### Keys of `{record}`\n")[1]
+    rows = re.findall(r"^\|([^|]*)\|", section.split("\n### ")[0], re.M)
+    return [key.replace("[]", "") for row in rows for key in re.findall(r"`(.+?)`", row)]
+
+
+def unlisted(found: dict, record: str) -> list[str]:
+    """Keys of a record that its tables do not list; `<…>` there stands for any name."""
+    patterns = [".+".join(map(re.escape, re.split(r"<.*?>", key))) for key in listed_keys(record)]
+    known = re.compile("|".join(patterns))
+    return [key for key in flat(found) if not known.fullmatch(key)]
+
+
+def flat(found: dict, prefix: str = "") -> Iterator[str]:
+    """An empty list names no key: what would stand in it is not known."""
+    for key, value in found.items():
+        if isinstance(value, dict):
+            yield from flat(value, f"{prefix}{key}.")
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            for one in value:
+                yield from flat(one, f"{prefix}{key}.")
+        elif value != []:
+            yield prefix + key
+
+
+def test_the_contract_lists_every_key_of_an_example_s_records(
+    finished_cup: FinishedRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a run, of the gear alone, of a sweep against sum and gear, and of end points."""
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
+    K = ("--Kb", "31312", "--Ke", "43275")
+    sweep, points = (
+        EXAMPLES / "measured" / f"{name}.csv" for name in ("xb1-40-sweep", "size-40-end-points")
+    )
+    run = {k: v for k, v in finished_cup.result.items() if k != "gear"}
+    assert not unlisted(run, "result.json")
+    assert not unlisted(finished_cup.result["gear"], "gear.json")
+    for record, words in (
+        ("gear.json", ("gear", finished_cup.design)),
+        ("diagnosis.json", ("diagnose", finished_cup.design, sweep, *K)),
+        ("diagnosis.json", ("diagnose", finished_cup.design, sweep, "--against", "gear")),
+        ("diagnosis.json", ("diagnose", finished_cup.design, points, *K)),
+    ):
+        ended = flexspline(*words, "--out", tmp_path / "out", "--json", folder=tmp_path)
+        assert ended.status == 0, ended.stderr
+        assert not unlisted(json.loads(ended.stdout), record), words
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_the_contract_lists_every_key_that_is_written_by_name(writer: str) -> None:
+    """Those too that no example has, as `units` of a cause that not all units show."""
+    tree = ast.parse((ROOT / "results" / f"{writer}.py").read_text(encoding="utf-8"))
+    nodes = list(ast.walk(tree))
+    keys = [k for node in nodes if isinstance(node, ast.Dict) for k in node.keys]
+    keys += [
+        n.slice for n in nodes if isinstance(n, ast.Subscript) and isinstance(n.ctx, ast.Store)
+    ]
+    names = {k.value for k in keys if isinstance(k, ast.Constant) and isinstance(k.value, str)}
+    records = ("result.json", "gear.json", "diagnosis.json")
+    listed = {key for record in records for key in listed_keys(record)}
+    known = {part for key in listed for part in key.split(".")}
+    assert names - NOT_KEYS <= known, names - known
+
+
+NOT_KEYS = {"flexspline", "shaft", ".", ","}
+"""Other names in those files: of parts, of decimal marks."""
 
 
 @pytest.mark.parametrize(

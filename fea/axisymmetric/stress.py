@@ -1,7 +1,7 @@
 """Peak von Mises stress under the wave generator's ellipse and under torque, on the meridian.
 
 At sharp corners and patch edges the linear solution is singular and no stress converges; points
-nearer to them than `exclusion_mm` do not count. Fillets count in full.
+nearer to them than `exclusion_mm` do not count. A fillet is no sharp edge: points on it count.
 """
 
 from __future__ import annotations

@@ -1,14 +1,18 @@
 """A measurement and a design in, a diagnosis out.
 
-Each kind of measurement goes the same way, in a folder of its own; its `diagnose.py` names the steps:
+Each kind of measurement goes the same way, in a folder of its own; its `diagnose.py` lists the steps in
+order. `whole_gear/` comes after a sweep that is held against the gear: which of the gear's inputs explains
+the rest. Its steps are in `identification.py`.
 
-| step | sweep/ | end_points/ | specimens/ |
-|---|---|---|---|
-| hypotheses | `regressors.py` | `regressors.py` | `parameters.py` |
-| evidence of a set of them | `evidence.py` | `evidence.py` | `evidence.py` |
-| race of sets | `race.py` | `race.py` | `race.py` |
-| causes, rivals, verdict; the rules are in `decision.py` | `identification.py` | `decide.py` | `decide.py` |
-| next measurement | `next_measurement.py` | `next_measurement.py` | `next_measurement.py` |
+| step | sweep/ | end_points/ | specimens/ | whole_gear/ |
+|---|---|---|---|---|
+| hypotheses | `regressors.py` | `regressors.py` | `parameters.py` | `inputs.py` |
+| evidence of a set of them | `evidence.py` | `evidence.py` | `evidence.py` | `fitted_input.py` |
+| race of sets | `race.py` | `race.py` | `race.py` | `pairs.py` |
+| causes, rivals, verdict | `identification.py` | `decide.py` | `decide.py` | `identification.py` |
+| next measurement | `next_measurement.py` | the same | the same | `identification.py` |
+
+The rules of the verdict for the first three are in `decision.py`.
 """
 
 from __future__ import annotations

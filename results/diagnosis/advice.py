@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
-from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, MORE_CYCLES, WARMER_K
+from flexspline.pipeline.diagnosis.sweep.next_measurement import (
+    AMPLITUDES,
+    LARGER,
+    LONG_HOLD,
+    MORE_CYCLES,
+    POSITIONS_DEG,
+    WARMER_K,
+)
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.structure_words import words_of
 from flexspline.results.diagnosis.words import title_of
@@ -22,26 +30,42 @@ CONFIRMS = {
 }
 """What confirms a cause that specimens show."""
 
+SLOWER, QUICKER = f"1/{FASTER:g}", f"{FASTER:g} times"
+BOTH_RATES = f"repeat the sweep at {SLOWER} and at {QUICKER} the rate of torque"
+POSITIONS = (
+    f"repeat the sweep at {len(POSITIONS_DEG)} wave generator angles "
+    f"{POSITIONS_DEG[1] - POSITIONS_DEG[0]:g}° apart, in mixed order"
+)
+FURTHER_CYCLES = f"run {MORE_CYCLES} further cycles at constant temperature"
 COMPARE = (
     "compare the filters of the torque and the angle channel, and whether both are read at one instant; then "
-    "repeat the sweep ten times slower: "
+    f"repeat the sweep at {SLOWER} of the rate of torque: "
 )
+
+
+def _sweep_to(shares: Sequence[float]) -> str:
+    """Of the largest torque measured."""
+    *others, last = (f"{share:g}" for share in shares)
+    return f"sweep to {', '.join(others)} and {last} times the largest torque"
+
+
+WITHIN = _sweep_to([share for share in AMPLITUDES if share <= 1])
 OTHER_ORDER = (
     "repeat the sweep at the same temperatures in another order, soaked, wave generator untouched: an "
     "effect of time does not follow the temperature"
 )
 SHOWS_STRUCTURE = {
-    "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; an "
-    "effect that repeats belongs to the gear, and its growth with the amplitude indicates the cause",
-    "torque_amplitude": "sweep to a quarter, half and all of the largest torque, each twice",
-    "torque_rate": "repeat the sweep ten times slower and ten times faster",
+    "torque_Nm": f"{WITHIN}, each twice without a pause; an effect that repeats belongs to the gear, and its "
+    "growth with the amplitude indicates the cause",
+    "torque_amplitude": f"{WITHIN}, each twice",
+    "torque_rate": BOTH_RATES,
     "temperature_C": OTHER_ORDER,
-    "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+    "input_angle_deg": POSITIONS,
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
     "record: the pause changes an effect of time, and not an effect of the number of cycles",
     "cycle": "if the gear was clamped anew between cycles, give each clamp a name in a column unit and "
-    "diagnose again; else run twenty further cycles at constant temperature, touching nothing",
+    f"diagnose again; else {FURTHER_CYCLES}, touching nothing",
     "unit": "measure the units again in another order, each clamped anew",
 }
 """What shows structure in a channel, everything else held."""
@@ -51,15 +75,15 @@ DOING: Mapping[DoingKind, str] = {
     "whole_sweeps": "sweep the torque 0 → +T → 0 → −T → 0 twice, with at least 100 rows a cycle",
     "more_specimens": "measure at least eight specimens whose length, wall and diaphragm differ",
     "warmer": f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
-    "other_rates": "repeat the sweep ten times slower and ten times faster",
-    "beyond_own_rates": "repeat the sweep ten times slower than its slowest cycle and ten times faster than "
-    "its quickest",
-    "hold": "hold the torque at both ends for twenty ramps",
-    "larger_torque": "sweep to a quarter, half, and one and a half times the largest torque",
-    "other_positions": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
-    "more_cycles": f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
-    "compare_channels": f"{COMPARE}the effect of a late reading is then a tenth as large",
-    "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then a tenth as wide, that of "
+    "other_rates": BOTH_RATES,
+    "beyond_own_rates": f"repeat the sweep at {SLOWER} of its slowest cycle's rate of torque and at "
+    f"{QUICKER} that of its quickest",
+    "hold": f"hold the torque at both ends, each time for as long as {LONG_HOLD:g} ramps take",
+    "larger_torque": _sweep_to(AMPLITUDES),
+    "other_positions": POSITIONS,
+    "more_cycles": f"{FURTHER_CYCLES} and repeat the sweep",
+    "compare_channels": f"{COMPARE}the effect of a late reading is then {SLOWER} as large",
+    "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then {SLOWER} as wide, that of "
     "a torque cell with hysteresis as wide as before",
     "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
     "both ways",
@@ -105,9 +129,9 @@ def _of_sweep(after: NextMeasurement) -> str:
     titles = _one_from_others(after)
     if after.doing is None or not after.separation:  # nothing was computed
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
-        return f"to tell {titles}: {doing}"
+        return f"to distinguish {titles}: {doing}"
     apart = f"their predictions then differ by {after.separation:.0f} times the noise"
-    return f"{doing_words(after.doing)}: {apart}; it tells {titles}"
+    return f"{doing_words(after.doing)}: {apart}; it distinguishes {titles}"
 
 
 def _alone(channel: str) -> str:
@@ -128,7 +152,7 @@ def _of_end_points(after: NextMeasurement) -> str:
     )
     if after.same_points is not None:
         apart += f" (end points at the same torques: {after.same_points:.1f})"
-    return f"{here}; it tells {titles} apart: {apart}"
+    return f"{here}; it distinguishes {titles}: {apart}"
 
 
 def _of_specimens(after: NextMeasurement) -> str:
@@ -140,11 +164,11 @@ def _of_specimens(after: NextMeasurement) -> str:
         return f"to confirm it: {test}" if test else f"measure {after.vary} of the specimens"
     titles = _one_from_others(after)
     if after.dimension_mm is None:
-        return f"another fixture, to tell {titles}"
+        return f"another fixture, to distinguish {titles}"
     made, drawn = after.dimension_mm
     return (
         f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
-        f"to each other then differ by {after.separation:.1f} times the noise; it tells {titles}"
+        f"to each other then differ by {after.separation:.1f} times the noise; it distinguishes {titles}"
     )
 
 

@@ -102,7 +102,7 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         return f"{found} (as simulated: this record does not narrow it)"
     off = signed((measured.value - simulated) / std, 1)
-    return f"{found} (simulated {plus_minus(simulated, std)}, {off} deviations)"
+    return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 
 
 def rows_used(prepared: PreparedSweep) -> str:

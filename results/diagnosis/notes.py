@@ -113,7 +113,7 @@ def record_notes(sweep: Sweep) -> list[str]:
     if copies := copied_rows(sweep):
         found.append(
             f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured anew, which makes the deviations too small"
+            "appended to itself? They count as measured anew, which makes the standard deviations too small"
         )
     return found
 

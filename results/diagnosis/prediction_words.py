@@ -29,8 +29,8 @@ def prediction_warnings(predicted: Predicted) -> Iterator[str]:
 
 
 def beyond_words(rows: RowsBeyond) -> str:
-    """What rows beyond the record are, what this file and the record span, and that deviations are wider."""
-    return f"{rows.count} of {rows.rows} rows {_outside(rows)}, so their deviations are wider"
+    """Which rows lie outside the record, what this file and the record span, and that they are less sure."""
+    return f"{rows.count} of {rows.rows} rows {_outside(rows)}, so their standard deviations are larger"
 
 
 def _outside(rows: RowsBeyond) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate_on_ramps
 from flexspline.results.diagnosis.channels import channel_words
@@ -35,7 +36,8 @@ def unseen_notes(history: History, band_Nm: float) -> list[str]:
         )
     elif history.time_s is not None and at_one_rate_on_ramps(history):
         found.append(
-            "all cycles run at one rate: a lag makes the same loop as friction; repeat one ten times slower"
+            "all cycles run at one rate: a lag makes the same loop as friction; repeat one at "
+            f"1/{FASTER:g} of the rate"
         )
     found += [
         f"{channel_words(channel)} was not recorded: {leaves_open}"

@@ -6,7 +6,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
-from flexspline.results.doubt import plus_minus, spread_text
+from flexspline.results.doubt import as_stated, spread_text
 from flexspline.results.limit_words import beside_figure, stiffness_notes
 from flexspline.results.numbers import beyond, grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
@@ -89,8 +89,8 @@ def design_facts(design: Design) -> list[list[str]]:
     """Pairs of name and value that say what was asked about."""
     f, gear = design.flexspline, design.gear
     segments, doubt = design.shaft.segment, design.uncertainty
-    flanks = plus_minus(gear.flank_clearance_um, doubt.flank_clearance_um, "µm")
-    play = plus_minus(design.bearing.radial_clearance_um, doubt.radial_clearance_um, "µm")
+    flanks = as_stated(gear.flank_clearance_um, doubt.flank_clearance_um, "µm")
+    play = as_stated(design.bearing.radial_clearance_um, doubt.radial_clearance_um, "µm")
     spread = " (1σ)" if "±" in flanks + play else "; 1σ not stated"
     size = (
         f"{f.kind}; inner diameter {f.inner_diameter_mm:g}, wall {f.wall_thickness_mm:g}, "

@@ -9,6 +9,7 @@ import pytest
 
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.stiffnesses import FIGURES
+from flexspline.pipeline.study.figures import FIGURES as STUDIED
 from flexspline.results.numbers import THIN, beyond, grouped
 from flexspline.results.quantities import QUANTITIES, quantity
 
@@ -45,6 +46,10 @@ def test_every_stiffness_has_its_words_in_the_table(figure: str):
     """A load case without them would be solved, and neither printed nor reported."""
     assert quantity(f"{figure}_Nm_per_rad").name
     assert quantity(f"{figure}_bounds_Nm_per_rad").name
+
+
+def test_every_figure_of_a_study_stands_in_the_table():
+    assert {figure.partition("[")[0] for figure in STUDIED} <= {q.key for q in QUANTITIES}
 
 
 def test_columns_are_distinct_and_carry_their_unit():

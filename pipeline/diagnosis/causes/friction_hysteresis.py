@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.causes.micro_slip import (
     micro_slips,
 )
 from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
+from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE, square_loops
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -86,7 +87,10 @@ class FrictionHysteresis(Cause):
     shape_doubt = 0.008
     """One and two deviations cover 65 and 88 % of 26 sizes."""
     vary = "torque_rate"
-    reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
+    reveals = (
+        f"repeat the loop at 1/{FASTER:g} of the rate of torque; hysteresis from friction does not change, "
+        "lag does"
+    )
     searched_apart = ({AHEAD: 30.0, "deadband_Nm": 0.0},)
 
     def shapes(self, rig: FitContext) -> list[Shape]:

@@ -20,6 +20,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 RATE = "rate_dependence"
 """This cause's id."""
+FASTER = 10.0
+"""Times slower and faster that shows a lag: it changes by a factor of 100 between the two, friction not."""
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp, where torque is held: a longer lag is creep, which shows in holds."""
 LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
@@ -49,7 +51,7 @@ class RateDependence(Cause):
     shape_doubt = 0.008
     """One and two deviations cover 69 and 93 % of 61 sizes; with 0.022 they covered 87 and 100 % of 45."""
     vary = "torque_rate"
-    reveals = "the same sweep ten times slower and ten times faster"
+    reveals = f"the same sweep at 1/{FASTER:g} and at {FASTER:g} times the rate of torque"
 
     def shapes(self, rig: FitContext) -> list[Shape]:
         ramp = ramp_s(rig.history)

@@ -1,4 +1,14 @@
-"""End points and a prediction in, a verdict out.
+"""End points and a prediction in, a verdict out: the steps in order.
+
+| step | file |
+|---|---|
+| deviations of all units from the prediction | `unit_findings.py` |
+| the envelope at each torque; each unit against it | `envelope.py`, `unit_findings.py` |
+| evidence of a set of causes | `regressors.py`, `evidence.py` |
+| race: causes of all units, or of one | `race.py` |
+| verdict, causes and rivals | `decide.py`, rules in `../decision.py` |
+| what would distinguish the rivals | `models.py`, `next_measurement.py`, `../plans.py` |
+| calibration, error on units left out, the model | `models.py` |
 
 Rules, with their numbers:
 - No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis OVER_SIMULATION_NATS better

@@ -1,4 +1,16 @@
-"""Measured stiffness of specimens and a design in, a verdict out."""
+"""Measured stiffness of specimens and a design in, a verdict out: the steps in order.
+
+| step | file |
+|---|---|
+| the design of each row; which part was measured | `bench.py`, `_parts` below |
+| FE of each row: compliance, load zone, sensitivities | `compliances.py`, `sensitivity.py` |
+| hypotheses: one parameter each | `parameters.py`, `tolerance.py` |
+| race of single parameters and pairs, by evidence | `race.py`, `evidence.py` |
+| verdict, causes and rivals | `decide.py`, rules in `../decision.py` |
+| FE again at a dimension that was found, then race and verdict again | `compliances.py` |
+| error on specimens left out | `_held_out` below |
+| next specimen | `next_measurement.py` |
+"""
 
 from __future__ import annotations
 

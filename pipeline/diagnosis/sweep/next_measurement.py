@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause
+from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import Decision
@@ -33,8 +34,8 @@ POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 """Steps of 50° tell the harmonics 1, 2 and 4 per turn apart; at steps of 60° 4 is an alias of 2."""
 LONG_HOLD = 20.0
 """Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
-FASTER = 10.0
-"""Times faster and slower: what lags changes by a factor of 100 between the two, friction not at all."""
+AMPLITUDES = (0.25, 0.5, 1.0, 1.5)
+"""Times the largest torque: two octaves within the record, and half as much again beyond it."""
 LARGER = Doing("larger_torque")
 """What no record of its largest torque has: how an effect goes on beyond it."""
 MORE_CYCLES = 40
@@ -72,7 +73,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
 
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
     many = [place0 + p for p in POSITIONS_DEG]
-    k = len(many)
+    k, n = len(many), len(AMPLITUDES)
     slower, faster, beyond = _rates_beyond(prepared.sweep.history, ramp)
     same = (place0, place0)
     return [
@@ -94,7 +95,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         MeasurementPlan(
             "torque_amplitude",
             LARGER,
-            cycles((0.25, 0.5, 1.0, 1.5), (1.0,) * 4, (0.0,) * 4, (place0,) * 4, (last,) * 4),
+            cycles(AMPLITUDES, (1.0,) * n, (0.0,) * n, (place0,) * n, (last,) * n),
         ),
         MeasurementPlan(
             "input_angle_deg",
@@ -112,7 +113,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
 def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
     """Ramps of a slower and a faster sweep as multiples of the typical one, and whether cycles differ.
 
-    Where they differ by `FASTER` already, ten times beyond the slowest and the quickest.
+    Where they differ by `FASTER` already, so many times beyond the slowest and the quickest.
     """
     quickest, slowest = rate_range(history)
     if quickest < FASTER * slowest or slowest == 0:

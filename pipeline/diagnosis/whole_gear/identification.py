@@ -3,6 +3,14 @@
 Each input alone is moved from its nominal value until the curve fits the middle of the measured loop best,
 by chi square. One that fits is named, with those that fit as well as its rivals, and a torque that would tell
 the first two apart. Where none fits, two together are tried (`pairs`); where no two do, nothing is named.
+
+| step | file |
+|---|---|
+| the middle of the measured loop | `central_curve.py` |
+| inputs, and how each changes the model | `inputs.py` |
+| each input alone | `fitted_input.py` |
+| two together | `pairs.py` |
+| outcome, error on other cycles, the torque that tells two apart | here |
 """
 
 from __future__ import annotations

@@ -101,4 +101,4 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
     table = " ".join(diagnosis_table(found, tmp_path).split())
     assert "agree" not in table
     assert "No effect" not in table
-    assert "(simulated 72 ± 13, +3.5 deviations)" in table
+    assert "(simulated 72 ± 13, +3.5 standard deviations)" in table

@@ -203,7 +203,7 @@ def test_a_prediction_says_which_rows_extrapolate(tmp_path: Path) -> None:
     (warning,) = prediction_warnings(found)
     assert warning == (
         "9 of 31 rows are beyond the measured torque: this file spans 0 to 3 N·m, the model's record "
-        "-2 to 2 N·m; the model is less certain there, so their deviations are wider"
+        "-2 to 2 N·m; the model is less certain there, so their standard deviations are larger"
     )
     assert found.angle_std_arcsec is not None
     assert found.angle_std_arcsec[-1] > 1.4 * found.angle_std_arcsec[20]
@@ -240,7 +240,7 @@ def test_small_loops_are_said_with_the_smallest_of_file_and_record() -> None:
     assert line == (
         f"40 of {len(history)} rows are in cycles smaller than the smallest measured: the smallest of this "
         "file reaches 1 N·m, that of the model's record 2 N·m; the friction of small loops is less certain, "
-        "so their deviations are wider"
+        "so their standard deviations are larger"
     )
 
 
