@@ -74,4 +74,5 @@ def largest_mesh(elements: int, most: int) -> Shortfall:
 
 def last_mesh(meshes: int) -> Shortfall:
     """So many meshes are solved and no more."""
-    return Shortfall(f"{meshes} mesh{'es' if meshes > 1 else ''} solved, and no more are made")
+    solved = "1 mesh" if meshes == 1 else f"{meshes} meshes"
+    return Shortfall(f"no finer mesh is made of this part for this load case, after {solved}")
