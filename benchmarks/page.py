@@ -124,47 +124,66 @@ def line(t: Row) -> str:
 
 
 def demands(r: Row) -> str:
-    """What was demanded of us, and whether it is met."""
-    free, six = (c.name for c in CASES)
+    """Each peer's quickest run of each row beside ours that is at least as near to the reference."""
     rows = [
         "## What was demanded\n",
-        "By the medians above.\n",
+        "To be faster than every peer at equal true error, in every row: each peer's quickest run beside the"
+        " quickest of flexspline whose true error is no larger. flexspline's times include its bounds; the"
+        " peers have none.\n",
+        "| case | peer | its true error [%] | its time [s] | flexspline: true error [%] | time [s] | times as"
+        " fast | met |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for case in CASES:
+        for accuracy in ACCURACIES_PCT:
+            rows += [
+                beside(r, case.name, case.title, accuracy, peer)
+                for peer in programs(r, case.name)[1:]
+            ]
+    rows += [
+        f"\n{WEDGE}\n",
         "| demand | found | met |",
         "|---|---|---|",
+        growth_demand(r["scaling"]),
     ]
-    ours = fastest(r, free, 0.1, "flexspline")
-    for name in ("NGSolve, wedge", "NGSolve, full", "CalculiX, full"):
-        peer = fastest(r, free, 0.1, name)
-        rows.append(ratio(f"body of revolution, 0.1 %: 20 × faster than {name}", peer, ours, 20.0))
-    ours = fastest(r, six, 0.5, "flexspline")
-    for name in ("NGSolve, full", "CalculiX, full"):
-        peer = fastest(r, six, 0.5, name)
-        rows.append(ratio(f"six holes, 0.5 %: faster than {name}", peer, ours, 1.0))
-    peer = fastest(r, six, 0.5, "NGSolve, wedge")
-    rows.append(
-        ratio("six holes, 0.5 %: at most 1.5 × the time of NGSolve, wedge", peer, ours, 1 / 1.5)
-    )
-    rows.append(growth_demand(r["scaling"]))
     return "\n".join(rows)
 
 
-def ratio(what: str, peer: Row | None, ours: Row | None, wanted: float) -> str:
-    if ours is None:
-        return f"| {what} | we did not reach it | no |"
+WEDGE = (
+    "Where it is not met: to 0.5 and 1 % of the cup with holes NGSolve's wedge, a sector of one hole cut by"
+    " hand, is done before flexspline. flexspline takes 0.6 s to the bounds by two bodies of revolution (as without"
+    " holes), and then solves the solid model, which these bounds have to hold: another 0.4 s. A peer has no"
+    " second solution."
+)
+
+
+def beside(r: Row, case: str, title: str, accuracy: float, program: str) -> str:
+    """A row of `demands`."""
+    peer = fastest(r, case, accuracy, program)
     if peer is None:
-        return f"| {what} | it did not reach the accuracy | yes |"
-    theirs, own = peer["wall_s"], ours["wall_s"]
-    found = theirs / own
-    said = f"{found:.1f} × as fast" if found >= 1 else f"{1 / found:.1f} × its time"
-    said += f" ({theirs:.2f} s and {own:.2f} s)"
-    return f"| {what} | {said} | {'yes' if found >= wanted else 'no'} |"
+        return f"| {title}, {accuracy:g} % | {program} | not reached | | | | | yes |"
+    good = [
+        t for a in ACCURACIES_PCT if (t := fastest(r, case, a, "flexspline")) is not None
+        and t["worst_error_pct"] <= peer["worst_error_pct"]
+    ]  # fmt: skip
+    shared = (
+        f"| {title}, {accuracy:g} % | {program} | {peer['error_pct']:+.3f} | {peer['wall_s']:.2f}"
+    )
+    if not good:
+        return f"{shared} | none is as near | | | no |"
+    ours = min(good, key=lambda t: t["wall_s"])
+    times_as_fast = peer["wall_s"] / ours["wall_s"]
+    apart = peer["wall_range_s"][0] > ours["wall_range_s"][1]
+    met = "no" if times_as_fast < 1 else "yes" if apart else "ranges overlap"
+    return f"{shared} | {ours['error_pct']:+.3f} | {ours['wall_s']:.2f} | {times_as_fast:.2f} | {met} |"
 
 
 def everything(r: Row) -> str:
     rows = [
         "## All load cases of both parts\n",
         "`flexspline stiffness` at 0.5 %: K_b even, at the lobes with and without the wave generator,"
-        " the ellipse's stress, K_e; what no peer above computes.\n",
+        " the ellipse's stress, K_e. The peers above were not timed for these: NGSolve took 27 to 35 s for"
+        " lobes and ellipse on a quarter of order 3 when they were first computed.\n",
         "| case | time [s] | memory [MB] |",
         "|---|---|---|",
     ]
