@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
@@ -91,7 +92,11 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
         measured = diagnosis.measurement
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
-        return (*_sweep_notes(diagnosis.sweep.explained, diagnosis.causes), *of_record)
+        return (
+            *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
+            *own_gap_notes(diagnosis.sweep.model),
+            *of_record,
+        )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
         of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
         return (*end_point_notes(diagnosis.end_points), *of_race)
@@ -181,6 +186,16 @@ def _unit_notes(explained: ExplainedSweep) -> list[str]:
         each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
         found.append(f"{title}: differs between units; shares of the common effect: {each}")
     return found
+
+
+def own_gap_notes(model: ExtendedModel) -> list[str]:
+    """The gap of each unit, where there are several: `calibrated` has what they have in common."""
+    if len(model.own) < 2:
+        return []
+    gaps = {unit: model.gap_arcsec + gap for unit, (_, gap) in model.own.items()}
+    each = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
+    apart = max(gaps.values()) - min(gaps.values())
+    return [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
 
 
 def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
