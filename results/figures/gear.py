@@ -57,11 +57,12 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
         newton = quantity("preload_tooth_force_N").unit
         last = any(isinstance(note, LoadedLastPair) for note in curve.notes)
         for i, (what, angle, force, width, where) in enumerate(forces):
-            axes = figure.add_axes((0.11, 0.59 - 0.47 * i, 0.86, 0.32))
+            axes = figure.add_axes((0.11, 0.62 - 0.5 * i, 0.86, 0.31))
             edge = angle == -90  # the same ball stands at 90°
             angle, force = np.append(angle, -angle[edge]), np.append(force, force[edge])
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
-            axes.set_title(f"Force of a {what} in {newton}{where}")
+            axes.set_title(f"Force of a {what} in {newton}")
+            axes.set_xlabel(where)
             most = int(np.abs(force).argmax())
             words = f"largest: {force[most]:.3g} {newton} at {grouped(angle[most], 0)}°"
             if last and i == 0 and most in (0, len(teeth) - 1):
@@ -81,7 +82,7 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
 
 def _stations(angle_deg: np.ndarray) -> str:
     """Where forces are solved: the model's stations are not the teeth themselves."""
-    return f", at stations {np.diff(angle_deg).mean():.2f}° apart" if len(angle_deg) > 1 else ""
+    return f"at stations {np.diff(angle_deg).mean():.2f}° apart" if len(angle_deg) > 1 else ""
 
 
 def _rising(torque: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ import pytest
 from hand_made_curve import gear_curve
 from legibility import drawn_figures, faults
 
+from flexspline.pipeline.gear_remarks import LoadedLastPair
 from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
 
 CURVES = {
@@ -17,6 +18,12 @@ CURVES = {
     "tiny": gear_curve(1.3e-7, 8.8e4, 3e-6),
     "straight": gear_curve(52.0, 600.0, 300.0, softening=1.0),
     "a gap first": gear_curve(31.0, 400.0, 200.0, softening=0.05),
+    "a loaded last pair": replace(
+        gear_curve(195.0, 474.0, 108.0),
+        tooth_angle_deg=tuple(1.5 * k for k in range(-36, 37)),
+        tooth_force_N=(*(50.0,) * 72, 415.0),
+        notes=(LoadedLastPair(54.0),),
+    ),
 }
 
 
