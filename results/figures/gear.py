@@ -57,7 +57,7 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
         newton = quantity("preload_tooth_force_N").unit
         last = any(isinstance(note, LoadedLastPair) for note in curve.notes)
         for i, (what, angle, force, width, where) in enumerate(forces):
-            axes = figure.add_axes((0.11, 0.62 - 0.5 * i, 0.86, 0.31))
+            axes = figure.add_axes((0.11, 0.61 - 0.49 * i, 0.86, 0.29))
             edge = angle == -90  # the same ball stands at 90°
             angle, force = np.append(angle, -angle[edge]), np.append(force, force[edge])
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
