@@ -14,6 +14,7 @@ from flexspline.pipeline.gear_remarks import (
     BucklingTube,
     CuttingFlanks,
     EarlyEnd,
+    FallingStiffness,
     GearNote,
     GearWarning,
     HalvedBalls,
@@ -57,6 +58,11 @@ WARNINGS: dict[GearWarning, str] = {
     "play_closes_gap": "reduce the play",
 }
 NOTES: dict[GearNote, str] = {
+    FallingStiffness("K2", "K1", 0.082, 87.4): (
+        "K2 is 8.2 % below K1: the gear is softer at larger torque, where catalogues' gears are stiffer. "
+        "Here both flanks press without torque"
+    ),
+    FallingStiffness("K3", "K2", 0.3, 0.0): "K3 is 30 % below K2",
     HalvedBalls(23, 24): "24 balls in place of 23",
     LowRatio(45): "below a ratio of 45 the model is too stiff",
     RelievedFlanks(35.3, 14.6, 54.0): "beyond 35° from the major axis",

@@ -152,10 +152,13 @@ class Cause(ABC):
         """Whether refining may go as far as this shape."""
         return True
 
+    def kind(self, shape: Shape) -> tuple[float | str, ...]:
+        """What refining a shape leaves as it is: its fixed parameters."""
+        return tuple(v for k, v in sorted(shape.items()) if k not in self.tunable)
+
     def law(self, shape: Shape) -> tuple[float | str, ...]:
-        """What refining a shape leaves as it is: its fixed parameters, and the names of those refined."""
-        fixed = (v for k, v in sorted(shape.items()) if k not in self.tunable)
-        return (*fixed, *(k for k in self.tunable if shape.get(k, 0.0) > 0))
+        """Its kind, and the names of the parameters that are refined."""
+        return (*self.kind(shape), *(k for k in self.tunable if shape.get(k, 0.0) > 0))
 
     def but_for_a_spring(self, shape: Shape) -> list[Shape]:
         """Shapes that differ from this one by twist in proportion to torque alone.

@@ -97,12 +97,13 @@ class Creep(Cause):
                 found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
         return found
 
-    def law(self, shape: Shape) -> tuple[float | str, ...]:
+    def kind(self, shape: Shape) -> tuple[float | str, ...]:
         if self._is_alone(shape):
-            kind = "alone"
-        else:  # refined in four steps, neither of these becomes the other
-            kind = "ends" if shape["longest_s"] <= ENDS_WITHIN * shape["hold_s"] else "goes on"
-        return (*super().law(shape), kind)
+            return (*super().kind(shape), "alone")
+        # refined in four steps, none of these becomes another
+        ends = shape["longest_s"] <= ENDS_WITHIN * shape["hold_s"]
+        growth = "power" if shape["exponent"] > 0 else "logarithm"
+        return (*super().kind(shape), "ends" if ends else "goes on", growth)
 
     @staticmethod
     def _is_alone(shape: Shape) -> bool:

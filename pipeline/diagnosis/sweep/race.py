@@ -40,8 +40,8 @@ from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
 
-TUNINGS, TUNED_ALONE = 3, 3
-"""Rounds of shape tuning; laws of a cause alone that are tuned."""
+TUNINGS, TUNED_KINDS = 3, 3
+"""Rounds of shape tuning; kinds of shapes of a cause alone that are tuned."""
 
 
 TUNED_LAWS = 2
@@ -174,7 +174,7 @@ def with_tuned_shapes(
 def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     """Sets of one cause alone that explain a good part of what the best set does.
 
-    The best set of each cause, and its best few single shapes of different laws: which law is best
+    The best set of each cause, and its best few single shapes of different kinds: which kind is best
     may change once each is tuned.
     """
     evidence = search.evidence
@@ -182,15 +182,16 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     found = {
         c.terms for owners, c in search.best.items() if len(owners) == 1 and c.log_evidence > enough
     }
-    by_law: dict[str, dict[tuple[object, ...], Candidate]] = {}
+    kinds: dict[str, dict[tuple[float | str, ...], Candidate]] = {}
     for c in sorted(search.tried, key=lambda c: -c.log_evidence):
         if len(c.terms) != 1 or c.log_evidence < enough:
             continue
         term = evidence.terms[c.terms[0]]
-        mine = by_law.setdefault(term.owner, {})
-        if len(mine) < TUNED_ALONE:
-            mine.setdefault(term.law, c)
-    found |= {c.terms for mine in by_law.values() for c in mine.values()}
+        assert term.cause is not None
+        mine = kinds.setdefault(term.owner, {})
+        if len(mine) < TUNED_KINDS:
+            mine.setdefault(term.cause.kind(term.shape), c)
+    found |= {c.terms for mine in kinds.values() for c in mine.values()}
     return sorted(found - {best.terms})
 
 
