@@ -28,6 +28,7 @@ STEADY_K = 0.6
 class B, at 0 °C), and a metal's stiffness changes by 0.03 %/K."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
+TURN_deg = 360.0
 TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
@@ -158,10 +159,14 @@ def over_turns(rig: FitContext) -> Made:
 
     So does an eccentric encoder's at the output, in part of an output turn. Where positions are taken in
     order it is a drift in steps from cycle to cycle, and where turns alias a kinematic error. Few positions
-    are left to that.
+    are left to that. Readings within one turn go on over its end, by less than half a turn at a time.
     """
     angle = rig.history.input_angle_deg
-    if angle is None or len(np.unique(angle)) <= TELLING:
+    if angle is None:
+        return
+    if np.ptp(angle) <= TURN_deg:
+        angle = np.unwrap(angle, period=TURN_deg)
+    if len(np.unique(angle)) <= TELLING:
         return
     turned = 2 * (angle - angle.min()) / np.ptp(angle) - 1
     for degree in range(1, TURNS_DEGREE + 1):

@@ -55,6 +55,28 @@ def test_an_eccentric_encoder_is_unknown(positions_deg: list[int], tmp_path: Pat
     assert outcome.unexplained[0].channel == "input_angle_deg"
 
 
+@pytest.mark.parametrize(("step_deg", "count"), [(37, 20), (45, 16), (70, 16), (90, 14), (120, 16)])
+def test_an_eccentric_encoder_is_unknown_where_a_rig_records_one_turn(
+    step_deg: int, count: int, tmp_path: Path
+) -> None:
+    """Positions from 0 to 360°, over which the zero jumps at the end of each input turn."""
+    turned = np.radians(step_deg * np.arange(count))
+    zeros = 60 * np.sin(turned / RATIO)
+    recorded = [step_deg * k % 360 for k in range(count)]
+    outcome = diagnosed(tmp_path, recorded, zeros, 0.0).outcome
+    assert outcome.verdict == "unknown"
+    assert not {c.id for c in outcome.causes} & {DRIFT, KINEMATIC}
+
+
+@pytest.mark.parametrize("step_deg", [37, 90])
+def test_a_drift_is_one_where_a_rig_records_one_turn(step_deg: int, tmp_path: Path) -> None:
+    outcome = diagnosed(
+        tmp_path, [step_deg * k % 360 for k in range(14)], np.zeros(14), 40.0
+    ).outcome
+    assert [c.id for c in outcome.causes] == [DRIFT]
+    assert outcome.verdict == "named"
+
+
 def test_a_drift_is_one_with_positions_in_order(tmp_path: Path) -> None:
     """It goes on within each cycle."""
     outcome = diagnosed(tmp_path, IN_ORDER, np.zeros(12), 40.0).outcome
