@@ -45,7 +45,8 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     creeps against the motion and jumps with it, so its steps f along the motion, less their mean, are skew.
     Those of noise of any colour, and of a smooth misfit, go either way alike: Σ(f³ − 3σ²f), of which the part
     in f is nought, has the mean 0 and the deviation √Σ(f³ − 3σ²f)². The saw-tooth passes for
-    coloured noise: its rms is that of the residual less the white part. An encoder's own saw-tooth has
+    coloured noise: its rms is that of the residual less the white part, or, where jumps from row to row have
+    passed for white noise as well, that of all the residual. An encoder's own saw-tooth has
     an rms of 1/√12 of its step: what is below a whole step is none, unless noise dithers the readings.
     """
     history, kept = prepared.rig.history, prepared.kept
@@ -55,7 +56,9 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     p_value = min(1.0, len(JUMP_BLOCK_ROWS) * float(ndtr(-max(found))))
     if p_value > STRUCTURE_P_VALUE:
         return None
-    saw_tooth = float(np.sqrt(max(float(np.var(left)) - prepared.noise.white, 0.0)))
+    every = float(np.var(left))
+    coloured = every - prepared.noise.white
+    saw_tooth = float(np.sqrt(coloured if coloured > 0 else every))
     step = encoder_step(prepared.sweep.angle_arcsec)
     if saw_tooth**2 < ROUNDING_RATIO * undithered(prepared.noise.white, step):
         return None

@@ -183,6 +183,24 @@ def test_random_stick_slip_jumps_with_the_motion() -> None:
     assert found.rms_arcsec == pytest.approx(np.sqrt(variance), rel=0.2)
 
 
+def test_jumps_every_few_rows_have_a_size() -> None:
+    """They pass for white noise; an rms of 0 beside a p-value of 1e-100 says nothing."""
+    once = sweep(cycles=6, rows=240, hold=0)
+    history = replace(once, torque_Nm=10 * once.torque_Nm)  # 3.3 arcsec a row
+    free, rng, limit = line(history.torque_Nm), np.random.default_rng(0), 10.0
+    out, stuck = np.empty_like(free), free[0]
+    for k, angle in enumerate(free):
+        if abs(angle - stuck) > limit:
+            stuck, limit = angle - np.sign(angle - stuck), 8 + 6 * rng.random()
+        out[k] = stuck + 0.05 * (angle - stuck)
+    out += rng.normal(0, 0.6, len(out))
+    explained = run_race(prepare(record(history, out), PREDICTION))
+    found = jumps_of(explained.prepared, explained.identified.fit)
+    assert found is not None
+    # a saw-tooth of 11 arcsec at the mean; a few rows each, so 20 %
+    assert found.rms_arcsec == pytest.approx(11 / np.sqrt(12), rel=0.2)
+
+
 @pytest.mark.parametrize("step", [0.0, 0.8])
 def test_noise_and_an_encoder_s_steps_are_no_jumps(step: float) -> None:
     assert jumps(np.zeros(len(TURNING)), step) is None
