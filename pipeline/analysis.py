@@ -9,9 +9,10 @@ from functools import partial
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.peak import stress_field
-from flexspline.fea.types import SolidField, Stiffness, StressPeak
+from flexspline.fea.types import MET, Shortfall, SolidField, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.percent import percent
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
@@ -29,6 +30,7 @@ from flexspline.pipeline.part_stiffness import part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
+from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
@@ -224,8 +226,8 @@ def torque_field(model: PartModel) -> SolidField:
             sharp_edges(model, twisted.meshed),
         )
         if not model.axisymmetric:
-            settled = replace(solved.peak, shortfall=twisted.stiffness.shortfall)
-            solved = replace(solved, peak=settled)
+            shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
+            solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
             return without_fillets(solved) if twisted.without_fillets else solved
         exact = torsion_stress(
             model.part.meridian,
@@ -238,3 +240,12 @@ def torque_field(model: PartModel) -> SolidField:
         )
     left_out = FILLETS if twisted.without_fillets else ""
     return replace(solved, peak=exact.peak, left_out=left_out)
+
+
+def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
+    """Of a mesh that is refined no further since two bodies of revolution enclose K (`twisted_part`)."""
+    half = twisted.stiffness.half_width
+    if half <= tolerance:
+        return MET
+    words = f"it is of one mesh, whose own K is known to ± {percent(half)}, not to ± {percent(tolerance)}"
+    return Shortfall(words)

@@ -42,7 +42,9 @@ from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
 """Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in those four sizes."""
-LOADING = (0.001, LOST_MOTION_SHARE, 0.09, T1_SHARE, 0.25, 0.37, T2_SHARE, 0.66, 0.83, 1.0)
+BELOW_T1 = (0.001, 0.005, 0.015, LOST_MOTION_SHARE, 0.065, 0.09)
+"""Of rated torque: teeth come into contact there, the curve bends, and the lost motion is read."""
+LOADING = (*BELOW_T1, T1_SHARE, 0.25, 0.37, T2_SHARE, 0.66, 0.83, 1.0)
 """Torques that are computed, of rated torque; a chord "from 0" begins at the first."""
 LAWS = (
     Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),

@@ -24,7 +24,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         )
     ),
     *(
-        Quantity(key, key, "N·m", name, symbol, digits=3, group="gear torque")
+        Quantity(key, key, "N·m", name, symbol, group="gear torque")
         for key, name, symbol in (
             ("T1_Nm", "Torque T1", "T_1"),
             ("T2_Nm", "Torque T2", "T_2"),

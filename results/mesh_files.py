@@ -100,16 +100,15 @@ def chosen_formats(words: Sequence[str]) -> tuple[str, ...]:
     asked = tuple(dict.fromkeys(f.strip() for word in words for f in word.split(",")))
     for name in asked:
         if name in ALWAYS:
-            others = f"for a mesh too, one of {', '.join(FORMATS)}"
-            raise DesignError("--format", name, f"is written without this option; {others}")
+            others = f"--format adds mesh files: one of {', '.join(FORMATS)}"
+            raise DesignError("--format", name, f"STEP and STL are always written; {others}")
         if name not in FORMATS:
             raise DesignError("--format", name, f"must be one of {', '.join(FORMATS)}")
-        if name in NEED_H5PY and find_spec("h5py") is None:
-            raise DesignError(
-                "--format",
-                name,
-                'needs h5py, which is not installed: pip install "flexspline[hdf5]"',
-            )
+    lacking = [name for name in asked if name in NEED_H5PY]
+    if lacking and find_spec("h5py") is None:
+        need = "needs" if len(lacking) == 1 else "need"
+        reason = f'{need} h5py, which is not installed: pip install "flexspline[hdf5]"'
+        raise DesignError("--format", ",".join(lacking), reason)
     return asked
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexspline.geometry.errors import ComputationError, why_of
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -15,12 +14,13 @@ from flexspline.results.job import Job, tell
 from flexspline.results.records import as_json
 
 
-class UnwrittenError(ComputationError):
-    """A diagnosis that is known and could not be written: why, and the verdict in words, on one line."""
+class UnwrittenError(OSError):
+    """A diagnosis that is known and could not be written: which file, why, and the verdict, on one line."""
 
-    def __init__(self, fault: OSError, found: Diagnosis) -> None:
+    def __init__(self, fault: OSError, found: Diagnosis, folder: Path) -> None:
         verdict = f"{verdict_heading(found)} ({found.verdict}). {summary(found)}"
-        super().__init__(f"{why_of(fault)}; no file was written. The verdict: {verdict}")
+        why = f"{fault.strerror or fault}; no file was written. The verdict: {verdict}"
+        super().__init__(fault.errno, why, fault.filename or str(folder))
 
 
 def diagnose_and_write(
@@ -56,7 +56,7 @@ def diagnose_and_write(
         try:
             note = write_diagnosis(job.folder, found, record, used, (job.file,))
         except OSError as fault:
-            raise UnwrittenError(fault, found) from fault
+            raise UnwrittenError(fault, found, job.folder) from fault
     if note is not None:
         tell(f"note: {note}")
     return as_json(record) if json else diagnosis_table(found, job.folder)

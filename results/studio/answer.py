@@ -63,7 +63,7 @@ def message(design: Design, found: FoundSoFar) -> Message:
     if "gear" in found:
         shown["gear"] = _gear(found["gear"])
     return {
-        "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
+        "stiffness": [_stiffness(name, figures, design) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
         "w0_mm": design.w0_mm,
         **shown,
@@ -104,12 +104,25 @@ def figure(key: str, value: float) -> Message:
     }  # fmt: skip
 
 
-def _stiffness(name: str, figures: FoundSoFar) -> Message:
+def without(name: str, design: Design) -> str:
+    """What a figure of the fast model leaves out, in a few words; K_b has bounds that hold with its holes."""
+    shaft = design.part("shaft")
+    if name != "K_e":
+        return ""
+    left = [
+        word for word, is_there in (("holes", shaft.bolts), ("keyway", shaft.keyway)) if is_there
+    ]
+    return f"without {' and '.join(left)}" if left else ""
+
+
+def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:
     key, bounds = f"{name}_Nm_per_rad", f"{name}_bounds_Nm_per_rad"
     if key not in figures:
         return _waiting(key)
     row = figure(key, figures[key])
     row["rough"] = bool(figures.get(f"{name}_rough"))
+    if "solver" not in figures:  # which the record of a finished job has: the fast model's alone
+        row["without"] = without(name, design)
     if bounds in figures:
         low, high = figures[bounds]
         half = 50 * (high - low) / figures[key]

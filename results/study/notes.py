@@ -70,7 +70,7 @@ def border_warnings(result: StudyResult) -> Iterable[str]:
     for key in PEAKS:
         count = sum(at_border(key, r.outcome.figures) for r in result.built)
         if count and (used := _used(result, key)):
-            yield f"{key} ({used}): in {count} of {len(result.built)} designs {BORDER}: {MEANING}"
+            yield f"{entry(key).name} ({used}): in {count} of {len(result.built)} designs {BORDER}: {MEANING}"
 
 
 def _used(result: StudyResult, key: str) -> str:
@@ -95,8 +95,8 @@ def unsettled(result: StudyResult) -> Iterable[str]:
         if best < inf and gain > MOVED:
             moved = "was first found" if gain == inf else f"still got {percent(gain)} better"
             yield (
-                f"the search has not settled: its best {key} {moved} in the last quarter of the "
-                f"{len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
+                f"the search has not settled: the best “{entry(key).name}” {moved} in the last quarter of "
+                f"the {len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
             )
 
 

@@ -87,6 +87,9 @@ def test_a_diagnosis(disk: str, tmp_path: Path, request: pytest.FixtureRequest) 
     failed(ended, disk)
     # what was computed is not lost with the files
     assert ("no file was written. The verdict: " in ended.said[0]) == (disk == "full")
+    if disk == "full":  # the file that has no room is named, not the design
+        assert ended.said[0].startswith(f"flexspline: {there / 'out'}")
+        assert str(CUP) not in ended.said[0]
 
 
 @pytest.mark.parametrize("disk", ["full", "read_only"])

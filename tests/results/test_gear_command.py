@@ -19,14 +19,18 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.sized import sized_template
 from flexspline.geometry.template import design_text
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.gear import LAWS, GearCurve, curve_of
+from flexspline.pipeline.gear import LAWS, LOADING, GearCurve, curve_of
 from flexspline.pipeline.gear_chain import chain_of
 from flexspline.pipeline.gear_model import pair_compliance
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear
 from flexspline.results.gear_words import gear_notes, gear_warnings
+from flexspline.results.numbers import THIN
+from flexspline.results.quantities import quantity
 
+UP = len(LOADING)
+"""Rows of the first way up."""
 STEEL = {"name": "a steel", "youngs_modulus_GPa": 206.0, "poissons_ratio": 0.3}
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(
     # a shaft without holes is solved on its meridian: this is no test of tetrahedra
@@ -65,7 +69,7 @@ def test_it_stiffens_and_turns_both_ways_alike(curve: GearCurve) -> None:
     )  # loading and unloading settle to 1e-9 of the largest gap
     assert angle[order] == pytest.approx(-angle[order][::-1], abs=1e-4)
     # rated to T2 is K3's chord
-    rad = np.radians(np.interp([10.0, 20.0], torque[:10], angle[:10]) / 3600)
+    rad = np.radians(np.interp([10.0, 20.0], torque[:UP], angle[:UP]) / 3600)
     assert 10.0 / np.diff(rad)[0] == pytest.approx(curve.K3_Nm_per_rad)
 
 
@@ -142,10 +146,24 @@ def test_files(curve: GearCurve, tmp_path: Path) -> None:
     with (tmp_path / "torque_angle.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(curve.torque_Nm)
-    assert float(rows[9]["torque_Nm"]) == pytest.approx(20.0)
-    assert float(rows[9]["angle_arcsec"]) == pytest.approx(curve.angle_arcsec[9])
+    assert float(rows[UP - 1]["torque_Nm"]) == pytest.approx(20.0)
+    assert float(rows[UP - 1]["angle_arcsec"]) == pytest.approx(curve.angle_arcsec[UP - 1])
     assert {p.name for p in tmp_path.iterdir()} == {
         "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png", "gear.json"}  # fmt: skip
+
+
+def test_the_curve_is_dense_where_the_lost_motion_lies(curve: GearCurve) -> None:
+    """Its torque is a row, with as many below it and some up to T1; and the row says what the figure says."""
+    up = curve.torque_Nm[:UP]
+    at = up.index(pytest.approx(curve.lost_motion_torque_Nm))
+    assert at >= 3
+    assert sum(curve.lost_motion_torque_Nm < torque < 0.99 * curve.T1_Nm for torque in up) >= 2
+    assert 2 * curve.angle_arcsec[at] == pytest.approx(curve.lost_motion_arcsec)
+
+
+def test_t1_has_all_its_digits() -> None:
+    """0.15 of 67 N·m."""
+    assert quantity("T1_Nm").with_unit(10.05) == f"10.05{THIN}N·m"
 
 
 def test_the_command_prints_the_figures_and_what_it_assumed(tmp_path: Path) -> None:
@@ -241,7 +259,7 @@ def test_the_thinnest_race_and_the_smallest_balls_still_have_a_curve(balls: int)
     """Softer than the gear with a usual race, as a part in its chain of springs is."""
     found = alone(DESIGN.changed({**THINNEST, **SMALLEST, "wave_generator.ball_count": balls}))
     usual = alone(DESIGN.changed({"wave_generator.ball_count": balls}))
-    assert np.diff(found.angle_arcsec[:10]).min() > 0
+    assert np.diff(found.angle_arcsec[:UP]).min() > 0
     assert found.K3_Nm_per_rad < usual.K3_Nm_per_rad
 
 
@@ -306,7 +324,7 @@ def test_the_ends_of_rated_torque_still_have_a_curve(rated_Nm: float) -> None:
     found = alone(DESIGN.changed({"gear.rated_torque_Nm": rated_Nm}))
     assert 0 < found.K1_Nm_per_rad < 1e6
     assert 0 < found.K3_Nm_per_rad < 1e6
-    up = np.array(found.angle_arcsec[:10])
+    up = np.array(found.angle_arcsec[:UP])
     assert np.diff(up).min() > 0
 
 

@@ -237,7 +237,8 @@ def test_every_format_is_named_where_users_look(page: str) -> None:
 @pytest.mark.parametrize("word", ["stl", "step"])
 def test_what_is_written_anyway_needs_no_format(word: str) -> None:
     with pytest.raises(
-        DesignError, match="is written without this option; for a mesh too, one of msh"
+        DesignError,
+        match="STEP and STL are always written; --format adds mesh files: one of msh",
     ):
         chosen_formats([word])
 
@@ -255,6 +256,19 @@ def test_a_missing_library_is_named_with_the_extra(
     monkeypatch.setattr("flexspline.results.mesh_files.find_spec", lambda _: None)
     with pytest.raises(DesignError, match=r"needs h5py.*flexspline\[hdf5\]"):
         chosen_formats([name])
+
+
+def test_all_formats_that_lack_it_are_named_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flexspline.results.mesh_files.find_spec", lambda _: None)
+    with pytest.raises(DesignError, match=r'"med,xdmf".*need h5py'):
+        chosen_formats(["msh,med,bdf,inp,vtu,xdmf"])
+    assert chosen_formats(["msh,bdf"]) == ("msh", "bdf")
+
+
+def test_the_readme_says_which_formats_need_more() -> None:
+    text = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    (row,) = (line for line in text.splitlines() if line.startswith("| `flexspline export"))
+    assert "flexspline[hdf5]" in row
 
 
 CASE = """*INCLUDE, INPUT=flexspline.inp

@@ -112,9 +112,9 @@ export class Figures {
   // Where the answers do not stand beside the sliders: four of them in a line that stays in sight.
   writeBrief({ stiffness, peaks, budget }) {
     const row = (key) => [...stiffness, ...peaks].find((entry) => entry.key === key);
-    const cell = (head, unit, text, key) => el("div", { class: this.stale(key) ? "stale" : "" },
-      el("dt", {}, head, unit ? ` ${unit}` : ""), el("dd", {}, text ?? "…"));
-    const found = BRIEF.map((key) => row(key)).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key));
+    const cell = (head, unit, text, key, without) => el("div", { class: this.stale(key) ? "stale" : "" },
+      el("dt", {}, head, unit ? ` ${unit}` : ""), el("dd", {}, text ?? "…"), without ? el("dd", { class: "limit" }, without) : "");
+    const found = BRIEF.map((key) => row(key)).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key, entry.without));
     const total = budget?.rows.find((entry) => entry.key.endsWith("total"));
     document.getElementById("brief").replaceChildren(...found, cell("Backlash", "arcsec", total?.text, DRAWN));
   }
@@ -146,6 +146,7 @@ export class Figures {
     if (this.narrow) below(value, side);
     else cells.push(el("td", { class: "side", title: row.half_pct }, side ?? ""));
     below(cells[1], row.at);
+    below(cells[1], row.without);
     if (row.more) {
       cells[1].append(el("span", { class: "limit more" }, row.more));
       cells[1].title = `${row.name}: ${row.more}`;
