@@ -32,6 +32,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import (
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead, run_race
 from flexspline.pipeline.diagnosis.sweep.torque_offset import (
     UNSEEN_SIGMAS,
+    WITHIN_GAP,
     Crossing,
     between_rows,
     crossing,
@@ -60,7 +61,8 @@ without a name, to which such a race might give one: of 220 made-up records with
 such friction (`tests/hidden`, seed 90817) one has more than 12, a pair with a shifted reading: 13."""
 PLACE_BETWEEN_ROWS, PASSED_OVER = 0.5, 3
 """Of the torque between the rows next to a crossing: its place is not known better. The third nearest on
-either side count: rows that noise or a jump has moved are passed over."""
+either side count: rows that noise or a jump has moved are passed over. So are rows still in the gap: drag or
+soft ends spread its crossing over torques, at none of which alone it is crossed."""
 FAR_PLACE_DEVIATIONS = 3.0
 """Deviations of the crossing's place, from which what the loop's shape says is not taken: the deviation is
 half of what no row tells apart."""
@@ -182,13 +184,13 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     good = ~prepared.outlier & (way != 0)
     gap = fit.gap_arcsec()
     left = fit.residual() + history.sign * gap / 2
-    along = (way * history.torque_Nm + friction)[good]
-    found = crossing(
-        along, (way * left)[good], gap[good], prepared.noise.std_arcsec, torque_noise_Nm(history)
-    )
+    along, height, gap = (way * history.torque_Nm + friction)[good], (way * left)[good], gap[good]
+    noise = prepared.noise.std_arcsec
+    found = crossing(along, height, gap, noise, torque_noise_Nm(history))
     if found is None:
         return None
-    between = PLACE_BETWEEN_ROWS * between_rows(along, found.offset_Nm, PASSED_OVER)
+    across = height * np.sign(along - found.offset_Nm) > WITHIN_GAP * gap  # beyond the middle half
+    between = PLACE_BETWEEN_ROWS * between_rows(along[across], found.offset_Nm, PASSED_OVER)
     return replace(found, std_Nm=max(found.std_Nm, between))
 
 
