@@ -274,7 +274,7 @@ def _limits(content: ReportContent) -> Iterable[Block]:
         yield Paragraph(bold(f"{heading}. ") + worded(text))
     if content.warnings:
         yield Heading("Warnings", "warnings")
-        yield Callout("amber", items=content.warnings)
+        yield Callout("amber", items=tuple(map(worded, content.warnings)))
     yield from dimensions(content.design)
     if content.versions:
         yield Heading("Versions")

@@ -60,11 +60,12 @@ def ref(target: str) -> Words:
     return (Span("ref", "", target),)
 
 
-_SYMBOLS = re.compile(r"K_b|K_e|T_L")
+_SYMBOLS = re.compile(r"(K_b(,(lobes|contact|free))?|K_e|T_L)(?!\w)")
+"""As `results.quantities` has them; not the beginning of a key, as of K_b_Nm_per_rad."""
 
 
 def worded(text: str) -> Words:
-    """The program's own words, in which K_b, K_e and T_L are symbols."""
+    """The program's own words, in which K_b, K_b,lobes, K_e and T_L are symbols."""
     spans, at = [], 0
     for found in _SYMBOLS.finditer(text):
         spans += [Span("", text[at : found.start()]), Span("symbol", found.group())]

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from flexspline.results.quantities import quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.spans import Words, bold, plain, ref, symbol, worded
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.gear import GearCurve
 
 _SERIES = quantity("K_series_Nm_per_rad")
 _SUM = quantity("backlash_arcsec.total")
@@ -35,11 +40,21 @@ def totals_and_terms(content: ReportContent) -> Words:
         + symbol(_FIRST.symbol)
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")
-        + plain(") includes teeth, rim contact and bearing, but no clearance: compare it, not ")
-        + symbol(_SERIES.symbol)
         + plain(
-            ", with a catalogue. Its lost motion includes the clearances"
+            ") has teeth, rim contact and bearing in series, but no clearance: compare it with a catalogue. "
+        )
+        + _whole_twist(curve)
+        + plain(
+            "Lost motion has the clearances"
             + (", of which none is left free" if curve.free_angle_arcsec == 0 else "")
             + ". Bolts, housing and friction are in none of these."
         )
     )
+
+
+def _whole_twist(curve: GearCurve) -> Words:
+    """Beside the sum, between the same torques; nothing where its terms were not asked for."""
+    if not curve.terms_arcsec:
+        return ()
+    total = _SUM.with_unit(curve.terms_arcsec["total"])
+    return worded(f"So it twists by {total} between ± T_L. ")

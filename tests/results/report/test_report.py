@@ -18,6 +18,7 @@ from flexspline.results.report.document import (
     Pictures,
 )
 from flexspline.results.report.pdf import pdf_of
+from flexspline.results.report.spans import plain, symbol, worded
 from flexspline.results.report.write import ReportError, write_report
 
 NASTY = [
@@ -184,12 +185,28 @@ def test_no_total_is_taken_for_another(tmp_path):
     write_report(tmp_path / "r.pdf", content())
     first = re.sub(r"\s+", " ", PdfReader(tmp_path / "r.pdf").pages[0].extract_text())
     for words in ("Totals and terms.", "is of flexspline and shaft alone", "of the whole gear (section 4)",
-                  "wind-up (section 3)", "friction are in none of these"):  # fmt: skip
+                  "wind-up (section 3)", "friction are in none of these",
+                  "So it twists by 237.0 arcsec between", "bearing in series"):  # fmt: skip
         assert words in first, words
     write_report(tmp_path / "r.pdf", content(gear=None, gear_missing="no equilibrium"))
     text, _ = text_of(tmp_path / "r.pdf")
-    assert "with a catalogue" not in text
+    assert "a catalogue" not in text
+    assert "it twists by" not in text
     assert "Neither includes bolts" in text
+
+
+def test_symbols_of_warnings_are_symbols_and_keys_are_whole():
+    said = "K_e is wide, K_b,free too: K_b_Nm_per_rad"
+    assert worded(said) == (
+        *symbol("K_e"), *plain(" is wide, "), *symbol("K_b,free"), *plain(" too: K_b_Nm_per_rad"),
+    )  # fmt: skip
+
+
+def test_no_warning_has_a_bare_symbol(tmp_path):
+    write_report(tmp_path / "r.pdf", content(warnings=("K_e is known to ± 4.8 %",)))
+    text, _ = text_of(tmp_path / "r.pdf")
+    assert "is known to ± 4.8 %" in text
+    assert "K_e" not in text
 
 
 def test_the_answers_stand_on_one_page(finished_cup):
