@@ -189,8 +189,8 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     found = crossing(along, height, gap, noise, torque_noise_Nm(history))
     if found is None:
         return None
-    across = height * np.sign(along - found.offset_Nm) > WITHIN_GAP * gap  # beyond the middle half
-    between = PLACE_BETWEEN_ROWS * between_rows(along[across], found.offset_Nm, PASSED_OVER)
+    beside = np.abs(height) > WITHIN_GAP * gap
+    between = PLACE_BETWEEN_ROWS * between_rows(along[beside], found.offset_Nm, PASSED_OVER)
     return replace(found, std_Nm=max(found.std_Nm, between))
 
 
