@@ -53,8 +53,8 @@ def totals_and_terms(content: ReportContent) -> Words:
 
 
 def _whole_twist(curve: GearCurve) -> Words:
-    """Beside the sum, between the same torques; nothing where its terms were not asked for."""
+    """With the clearances, between the torques of the sum; nothing where its terms were not asked for."""
     if not curve.terms_arcsec:
         return ()
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"So it twists by {total} between ± T_L. ")
+    return worded(f"With clearance it twists by {total} between ± T_L. ")
