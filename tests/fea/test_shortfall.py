@@ -150,7 +150,7 @@ def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkey
 
 def test_the_solid_model_gives_the_last_of_its_meshes(exact, monkeypatch) -> None:
     found, _ = solved(9, 1, monkeypatch)
-    assert found.shortfall.words.startswith("1 mesh")
+    assert found.shortfall.words.endswith("after 1 mesh")
     assert held(found, exact)
 
 
