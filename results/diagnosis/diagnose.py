@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -14,7 +15,7 @@ from flexspline.results.job import Job, tell
 from flexspline.results.records import as_json
 
 
-class UnwrittenError(OSError):
+class UnwrittenError(FlexsplineError, OSError):
     """A diagnosis that is known and could not be written: which file, why, and the verdict, on one line."""
 
     def __init__(self, fault: OSError, found: Diagnosis, folder: Path) -> None:

@@ -57,4 +57,4 @@ def _whole_twist(curve: GearCurve) -> Words:
     if not curve.terms_arcsec:
         return ()
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"With clearance it twists by {total} between ± T_L. ")
+    return worded(f"It twists by {total} between ± T_L. ")
