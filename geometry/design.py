@@ -23,47 +23,13 @@ from flexspline.geometry.fields import (
     Percent,
     within,
 )
-from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial, Material
+from flexspline.geometry.material import Materials
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.play_limit import play_limit
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.shapes import Flexspline
 from flexspline.geometry.wave_generator import WaveGenerator
-
-
-class Materials(DesignTable):
-    """What the parts are made of."""
-
-    flexspline: Material
-    shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
-    circular_spline: ElasticMaterial | None = Field(
-        default=None, description="of the whole gear; absent: as the flexspline's"
-    )
-    bearing: ElasticMaterial | None = Field(
-        default=None,
-        description=f"races and balls, of the whole gear; absent: {BEARING_STEEL.name}",
-    )
-
-    @property
-    def stated(self) -> dict[str, ElasticMaterial]:
-        """By key."""
-        return {key: value for key, value in self if value is not None}
-
-    @property
-    def of_shaft(self) -> Material:
-        """As stated, else the flexspline's."""
-        return self.shaft or self.flexspline
-
-    @property
-    def of_circular_spline(self) -> ElasticMaterial:
-        """As stated, else the flexspline's."""
-        return self.circular_spline or self.flexspline
-
-    @property
-    def of_bearing(self) -> ElasticMaterial:
-        """Of races and balls: as stated, else the steel of bearings."""
-        return self.bearing or BEARING_STEEL
 
 
 class Gear(DesignTable):

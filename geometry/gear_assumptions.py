@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.circular_spline import circular_spline
-from flexspline.geometry.design import Design, Materials
+from flexspline.geometry.design import Design
+from flexspline.geometry.material import Materials
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 

@@ -55,3 +55,37 @@ class Material(ElasticMaterial):
 
 BEARING_STEEL = ElasticMaterial(name="100Cr6", youngs_modulus_GPa=208.0, poissons_ratio=0.3)
 """Of races and balls where the file states none (makers' data sheets)."""
+
+
+class Materials(DesignTable):
+    """What the parts are made of."""
+
+    flexspline: Material
+    shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
+    circular_spline: ElasticMaterial | None = Field(
+        default=None, description="of the whole gear; absent: as the flexspline's"
+    )
+    bearing: ElasticMaterial | None = Field(
+        default=None,
+        description=f"races and balls, of the whole gear; absent: {BEARING_STEEL.name}",
+    )
+
+    @property
+    def stated(self) -> dict[str, ElasticMaterial]:
+        """By key."""
+        return {key: value for key, value in self if value is not None}
+
+    @property
+    def of_shaft(self) -> Material:
+        """As stated, else the flexspline's."""
+        return self.shaft or self.flexspline
+
+    @property
+    def of_circular_spline(self) -> ElasticMaterial:
+        """As stated, else the flexspline's."""
+        return self.circular_spline or self.flexspline
+
+    @property
+    def of_bearing(self) -> ElasticMaterial:
+        """Of races and balls: as stated, else the steel of bearings."""
+        return self.bearing or BEARING_STEEL

@@ -107,12 +107,12 @@ def chance(best: float, without: Iterable[float]) -> float:
     return exp(min(0.0, max(without) - best))
 
 
-def is_significant(cause: NamedCause) -> bool:
-    """Whether a cause's size differs from none by more than `SIZE_KNOWN` of its deviations.
+def is_significant(cause: NamedCause, times: float = 1.0) -> bool:
+    """Whether a cause's size differs from none by more than `times` SIZE_KNOWN of its deviations.
 
     Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation.
     """
-    return differs_from_none(cause.id, cause.deviations)
+    return differs_from_none(cause.id, cause.deviations / times)
 
 
 def differs_from_none(cause_id: str, deviations: float) -> bool:
@@ -146,9 +146,8 @@ def decided(
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
         # beside what has no name a mere suspicion is none
         likely = (
-            c for c in found
-            if differs_from_none(c.id, c.deviations / BESIDE_UNKNOWN) and c.probability >= EVEN_ODDS
-        )  # fmt: skip
+            c for c in found if is_significant(c, BESIDE_UNKNOWN) and c.probability >= EVEN_ODDS
+        )
         return Decision("unknown", tuple(likely), left)
     if not found:
         return Decision("unknown", (), left) if structure else CONSISTENT

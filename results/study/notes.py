@@ -162,7 +162,7 @@ def _holes(result: StudyResult) -> Iterable[str]:
 def wide_bounds(result: StudyResult) -> Iterable[str]:
     """A line where bolt holes leave K_b of some designs less certain than `solver.tolerance_pct` asks."""
     key, low, high = stiffness_keys("K_b")
-    tolerance = result.study.design.solver.tolerance_pct / 100
+    tolerance = result.study.design.solver.tolerance
     figures = [r.outcome.figures for r in result.built if low in r.outcome.figures]
     halves = [(f[high] - f[low]) / (2 * f[key]) for f in figures]
     if count := sum(half > tolerance for half in halves):

@@ -28,7 +28,6 @@ STEADY_K = 0.6
 class B, at 0 °C), and a metal's stiffness changes by 0.03 %/K."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
-TURN_deg = 360.0
 TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
@@ -164,8 +163,8 @@ def over_turns(rig: FitContext) -> Made:
     angle = rig.history.input_angle_deg
     if angle is None:
         return
-    if np.ptp(angle) <= TURN_deg:
-        angle = np.unwrap(angle, period=TURN_deg)
+    if np.ptp(angle) <= 360.0:
+        angle = np.unwrap(angle, period=360.0)
     if len(np.unique(angle)) <= TELLING:
         return
     turned = 2 * (angle - angle.min()) / np.ptp(angle) - 1
