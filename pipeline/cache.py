@@ -22,7 +22,7 @@ from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
 
 T = TypeVar("T")
-FORMAT = 24
+FORMAT = 25
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

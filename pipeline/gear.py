@@ -36,7 +36,12 @@ from flexspline.pipeline.gear_notes import (
 )
 from flexspline.pipeline.gear_remarks import GearNote, GearWarning
 from flexspline.pipeline.gear_terms import FREE_ANGLE_TERMS, gear_terms, play_effect, small_torque
-from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
+from flexspline.pipeline.largest_torques import (
+    buckling_torque,
+    largest_torques,
+    tube_of,
+    two_digits,
+)
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
@@ -73,7 +78,8 @@ class GearCurve:
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± `terms_torque_Nm`, T_L, in place of the backlash sum's terms
         (`pipeline.gear_terms`); empty where nobody asked.
-    buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube.
+    buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube, or
+        it yields first.
     ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces
         (`fea.gear.engagement`); None where nobody asked, or where they hold beyond a thousand rated torques.
     """
@@ -146,7 +152,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             curve,
             terms_arcsec=terms,
             terms_torque_Nm=load.torque_Nm,
-            buckling_torque_Nm=None if tube is None else two_digits(tube.lower_edge_Nm),
+            buckling_torque_Nm=buckling_torque(tube),
             ratcheting_torque_Nm=limit and two_digits(limit),  # found to 5 %
             warnings=(*curve.warnings, *play_warned, *end_warned),
             notes=(*curve.notes, *of_load, *play_noted, *end_noted),

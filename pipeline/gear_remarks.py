@@ -165,7 +165,7 @@ GearNote = (
     | JointClearances
     | FallingStiffness
     | BucklingTube
-    | Literal["play_beside_stroke", "no_ratcheting", "ratcheting_is_upper"]
+    | Literal["play_beside_stroke", "no_ratcheting", "ratcheting_is_upper", "tube_yields_first"]
 )
 """What was simplified; that play makes the free angle smaller as the stroke is not full, that the gear
 ratchets at no torque, or that the torque at which it does is an upper limit."""

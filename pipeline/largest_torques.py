@@ -21,12 +21,19 @@ def largest_torques(
     noted: list[GearNote] = ["no_ratcheting" if engaged_Nm is None else "ratcheting_is_upper"]
     if engaged_Nm is not None and engaged_Nm < rated_Nm:
         warned.append(EarlyEnd("ratchets", engaged_Nm, rated_Nm))
-    if tube is not None:
+    if tube is not None and tube.yields_first:
+        noted.append("tube_yields_first")
+    elif tube is not None:
         buckles = tube.lower_edge_Nm
         if buckles < rated_Nm:
             warned.append(EarlyEnd("buckles", buckles, rated_Nm))
         noted.append(BucklingTube(buckles, tube.stress_MPa(buckles)))
     return warned, noted
+
+
+def buckling_torque(tube: Tube | None) -> float | None:
+    """[N·m], two digits: an estimate; None without a tube, or where it yields first."""
+    return None if tube is None or tube.yields_first else two_digits(tube.lower_edge_Nm)
 
 
 def two_digits(value: float) -> float:

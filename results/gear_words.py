@@ -161,6 +161,8 @@ def _note(note: GearNote) -> str:
             )
         case "no_ratcheting":
             return "no torque was found at which the gear ratchets"
+        case "tube_yields_first":
+            return "the flexspline's tube is short or thick: it yields before it buckles"
         case "ratcheting_is_upper":
             return (
                 "the ratcheting torque is an upper limit, as the model is elastic; catalogues' gears ratchet "

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import typer
 from typer.core import TyperGroup
 
-from flexspline.results.exit_status import REFUSED
+from flexspline.results.exit_status import FAILED, REFUSED
 from flexspline.results.job import tell
 
 T = TypeVar("T")
@@ -32,9 +32,17 @@ class Commands(TyperGroup):
 
 @contextmanager
 def answered_in_one_line() -> Iterator[None]:
-    """Raises typer.Exit(2) in place of an error of use."""
+    """Raises typer.Exit: 2 in place of an error of use, 1 where a help text cannot be written."""
     try:
         yield
+    except BrokenPipeError:  # whoever read it has gone
+        raise
+    except OSError as error:
+        from flexspline.geometry.errors import why_of
+        from flexspline.results.streams import STDOUT
+
+        tell(f"flexspline: {why_of(error, f'{STDOUT}: ')}")
+        raise typer.Exit(FAILED) from None
     except UsageError as wrong:
         if type(wrong).show is not UsageError.show:  # no words at all: the help is shown
             raise

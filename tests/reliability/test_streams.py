@@ -164,9 +164,12 @@ FULL = Path("/dev/full")
 
 
 @pytest.mark.skipif(not FULL.exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("words", [("init",), ("schema",), ("backlash", CUP, *GIVEN, "--json")])
+@pytest.mark.parametrize(
+    "words",
+    [("init",), ("schema",), ("backlash", CUP, *GIVEN, "--json"), ("--help",), ("run", "--help")],
+)
 def test_a_full_disk_behind_stdout_is_one_line(words: tuple, tmp_path: Path) -> None:
-    out = () if len(words) == 1 else ("--out", tmp_path / "out")
+    out = ("--out", tmp_path / "out") if words[0] == "backlash" else ()
     with FULL.open("wb") as full:
         done = run(tmp_path, {}, *words, *out, stdout=full)
     assert done.returncode == 1

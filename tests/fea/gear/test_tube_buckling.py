@@ -67,3 +67,11 @@ def test_a_cup_that_is_all_ring_has_no_tube() -> None:
     f = DESIGN.flexspline
     all_ring = f.model_copy(update={"length_mm": f.diaphragm_thickness_mm + f.ring_width_mm})
     assert Tube.between(all_ring, STEEL) is None
+
+
+def test_a_short_tube_yields_before_it_buckles() -> None:
+    """Shear strain at buckling: 3 t/L of a plate without curvature, more than any material's elastic one."""
+    short = replace(LONG, length=4 * LONG.wall)
+    assert short.stress_MPa(short.lower_edge_Nm) > 0.1 * STEEL.youngs_modulus_MPa
+    assert short.yields_first
+    assert not LONG.yields_first
