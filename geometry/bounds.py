@@ -72,12 +72,12 @@ def beside(
 ) -> str:
     """What makes no step, or a visible one, beside another length: ``0.4 (name) or from … to …``.
 
-    `step` is the smallest that counts, `low` and `high` the ends of all; with `zero`, 0 is below `low`.
+    A level of more digits is called by its name. `step` is the smallest that counts, `low` and `high` the ends of all; with `zero`, 0 is below `low`.
     """
     found = []
     if low <= level <= high or (zero and level == 0):
-        found.append(repr(level) if float(f"{level:g}") != level else f"{level:g}")
-        found[0] += f" ({name})"
+        few = f"{level:.{DIGITS}g}"
+        found.append(f"{few} ({name})" if float(few) == level else f"exactly {name}")
     under = min(step_down(level, step), high)
     if zero and level >= step and under < LENGTH_mm.low:
         found.append("0")

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import STD_KEY
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.numbers import grouped
@@ -58,6 +59,6 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
         keys = ", ".join(a["key"] for a in gear["assumed"])
         lines += row((f"assumed for the whole gear: {keys}",))
     for a in record.get("assumed", ()):
-        lines += row((f"assumed: {a['key']} = {a['value']:.4g}, {a['why']}",))
+        lines += row((f"assumed: {a['key']} = {plain_number(a['value'], 4)}, {a['why']}",))
     lines.append(f"files in {folder}")
     return "\n".join(lines)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from flexspline.geometry.errors import plain_number
 from flexspline.geometry.rated import LOST_MOTION_TORQUE
 from flexspline.pipeline.gear_remarks import (
     BucklingTube,
@@ -66,7 +67,7 @@ def _warning(warning: GearWarning) -> str:
                 "rated torque: teeth and rim are not elastic there"
             )
         case EarlyEnd(end, torque, rated):
-            return f"{ENDS[end]} at about {_rounded(torque)} N·m, below the rated torque of {rated:.4g} N·m"
+            return f"{ENDS[end]} at about {_rounded(torque)} N·m, below the rated torque of {plain_number(rated, 4)} N·m"
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
@@ -131,7 +132,7 @@ def _note(note: GearNote) -> str:
             )
         case TwoTorques(load, lost_motion):
             return (
-                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {lost_motion:.4g} N·m, "
+                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {plain_number(lost_motion, 4)} N·m, "
                 f"{LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
             )
         case JointClearances(alone, term):
@@ -174,4 +175,4 @@ def _note(note: GearNote) -> str:
 
 def _rounded(value: float) -> str:
     """Two digits: it is an estimate."""
-    return f"{two_digits(value):g}"
+    return plain_number(two_digits(value))

@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.trial_tables import Values
 
@@ -76,7 +77,7 @@ def grid(study: Study) -> GridPlan:
         axis = np.linspace(*span.ends, span.steps or each)
         if key in study.whole:
             axis = np.unique(np.round(axis))
-        axes[key] = [float(v) for v in axis]
+        axes[key] = [float(plain_number(v)) for v in axis]
     return GridPlan(axes)
 
 

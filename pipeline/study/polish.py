@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,21 +49,23 @@ def polish_of(
     sense: str,
     excesses: Callable[[FrozenTrial], Sequence[float]],
 ) -> Polish | None:
-    """The next design's step; None where the sampler is to suggest it."""
+    """The next design's step; None where the sampler is to suggest it.
+
+    While none keeps to all constraints, the best is the one that oversteps them least.
+    """
     rows = [t for t in past if ROW in t.user_attrs]
     share = len(rows) / evaluations
     if share < BEGINS or (share < ALONE and len(past) % 2):
         return None
     sign = 1.0 if sense == "minimize" else -1.0
     best: FrozenTrial | None = None
+    least = (inf, inf)
     step = FIRST_STEP
     for i, trial in enumerate(rows):
-        better = bool(
-            trial.values
-            and all(e <= 0 for e in excesses(trial))
-            and (best is None or sign * trial.values[0] < sign * best.values[0])
-        )
-        best = trial if better else best
+        overstep = sum(max(0.0, e) for e in excesses(trial))
+        rank = (overstep, sign * trial.values[0]) if trial.values else (inf, inf)
+        better = rank < least
+        best, least = (trial, rank) if better else (best, least)
         if i >= BEGINS * evaluations:
             step = min(FIRST_STEP, step * LONGER) if better else max(SHORTEST, step * SHORTER)
     return None if best is None else Polish(best, step)

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexspline.geometry.keys import value_at
 from flexspline.pipeline.study.claims import ROW
 from flexspline.pipeline.study.polish import near, polish_of
 from flexspline.pipeline.study.study import Study
+from flexspline.pipeline.study.trial_tables import Values
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler
@@ -32,6 +34,21 @@ def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
         limit.excess(figures[k]) / limit.size if k in figures else 1.0
         for k, limit in study.file.constraint.items()
     ]
+
+
+def own_values(study: Study) -> Values:
+    """Of the varied keys in the design that the study names; none where one lies outside its span."""
+    own: dict[str, float] = {}
+    for key, span in study.file.vary.items():
+        value = value_at(study.design, key)
+        low, high = span.ends
+        inside = value is not None and (
+            value in span.values if span.values else low <= value <= high
+        )
+        if value is None or not inside:
+            return {}
+        own[key] = value
+    return own
 
 
 def sampler_of(study: Study) -> BaseSampler:
@@ -62,8 +79,10 @@ def sampler_of(study: Study) -> BaseSampler:
         words = [file.run.seed, trial.number, *more]
         return int(np.random.SeedSequence(words).generate_state(1)[0])
 
+    own = own_values(study)
+
     class Seeded(BaseSampler):
-        """Delegates to a sampler seeded for the trial."""
+        """Delegates to a sampler seeded for the trial; the first is the study's own design."""
 
         def infer_relative_search_space(self, study: Any, trial: FrozenTrial) -> dict[str, Any]:
             return fresh(seed_of(trial)).infer_relative_search_space(study, trial)
@@ -78,6 +97,8 @@ def sampler_of(study: Study) -> BaseSampler:
             return fresh(seed_of(trial)).sample_relative(study, trial, search_space)
 
         def sample_independent(self, study: Any, trial: FrozenTrial, name: str, over: Any) -> Any:
+            if trial.number == 0 and name in own:
+                return own[name]
             # one stream per key, or keys of equal spans would get equal numbers
             seed = seed_of(trial, *name.encode())
             return fresh(seed).sample_independent(study, trial, name, over)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
@@ -79,7 +80,7 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
 
 def _torque(curve: GearCurve, key: str) -> Words:
     entry = quantity(key)
-    return symbol(entry.symbol) + plain(f" = {getattr(curve, key):.{entry.digits}g} {entry.unit}")
+    return symbol(entry.symbol) + plain(f" = {entry.with_unit(getattr(curve, key))}")
 
 
 def _figure(entry: Quantity, value: float) -> tuple[str | Words, ...]:
@@ -121,7 +122,7 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
 
 
 def _assumed(curve: GearCurve) -> Iterable[Block]:
-    each = "; ".join(f"{a.key} = {a.value:.4g} ({a.why})" for a in curve.assumed)
+    each = "; ".join(f"{a.key} = {plain_number(a.value, 4)} ({a.why})" for a in curve.assumed)
     yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
     if curve.warnings:
         yield Callout("amber", items=tuple(map(sentence, gear_warnings(curve))))

@@ -167,6 +167,7 @@ def test_beside_and_outside() -> None:
         beside(20.0, "x", 0.002, 17.0, 1e4) == "20 (x), from 17 to 19.998 or from 20.002 to 10000"
     )
     assert beside(0.0, "x", 0.002, 0.0, 5.0, zero=True) == "0 (x) or from 0.002 to 5"
+    assert beside(0.1 + 0.2, "x", 0.5, 0.1, 5.0) == "exactly x or from 0.8 to 5"
     assert outside([(1.0, 2.0), (1.5, 3.0)], 0.0, 5.0) == [(0.0, 1.0), (3.0, 5.0)]
 
 

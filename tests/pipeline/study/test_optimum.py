@@ -60,6 +60,27 @@ def test_no_worse_than_a_dense_grid_of_a_function_with_two_valleys(
     assert best["flexspline_mass_g"] <= 22
 
 
+def test_the_first_design_is_the_study_s_own(tmp_path: Path) -> None:
+    def evaluation(task: Task) -> Outcome:
+        return Outcome({"K_b_Nm_per_rad": task.values[WALL], "flexspline_mass_g": 20.0})
+
+    rows = found(TWO + 'method = "optimize"\nevaluations = 3\n', tmp_path, evaluation).rows
+    assert (rows[0].values[WALL], rows[0].values[LENGTH]) == (0.4, 30.0)  # of xb1-40.toml
+
+
+@pytest.mark.parametrize("seed", [1, 5])
+def test_few_evaluations_find_a_narrow_constraint(seed: int, tmp_path: Path) -> None:
+    """1 % of the span keeps it: steps go about the design that oversteps it least."""
+
+    def evaluation(task: Task) -> Outcome:
+        mass = 22 + abs(task.values[LENGTH] - 33.3)
+        return Outcome({"K_b_Nm_per_rad": 1e5 * task.values[WALL], "flexspline_mass_g": mass})
+
+    narrow = TWO.replace("max = 22.0", "max = 22.1")
+    text = narrow + f'method = "optimize"\nevaluations = 30\nseed = {seed}\n'
+    assert found(text, tmp_path, evaluation).pareto
+
+
 def torsion(task: Task) -> Outcome:
     return evaluate(replace(task, solves=("torsion",)))
 

@@ -11,6 +11,7 @@ import pytest
 from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 
 from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.plan import grid
 from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
 from flexspline.pipeline.study.store import Finished
 
@@ -58,6 +59,19 @@ def test_a_grid_has_every_combination_once(tmp_path: Path) -> None:
         (w, n) for w in (0.3, 0.4, 0.5) for n in (25.0, 30.0)
     )
     assert all(r.outcome == quick(Task({}, r.values, ())) for r in rows)
+
+
+def test_values_of_a_grid_are_as_a_person_writes_them() -> None:
+    study = study_of(
+        GRID.replace("min = 0.3, max = 0.5, steps = 3", "min = 0.1, max = 20.0, steps = 5")
+    )
+    assert grid(study).axes[WALL] == [
+        0.1,
+        5.075,
+        10.05,
+        15.025,
+        20.0,
+    ]  # steps of 4.975, none of them 5.074999999999999
 
 
 def test_the_same_command_again_evaluates_nothing(tmp_path: Path) -> None:
