@@ -77,3 +77,27 @@ def test_the_friction_ahead_is_found_beside_a_lag(tmp_path: Path) -> None:
     assert causes["friction_hysteresis"].ahead_Nm == pytest.approx(ahead, abs=0.065)
     # the twist behind the rate is c·τ, to what the friction's place leaves of it
     assert causes["rate_dependence"].magnitude == pytest.approx(COMPLIANCE * lag_s, rel=0.1)
+
+
+def test_no_lock_that_gives_way_against_the_torque_takes_friction_back(tmp_path: Path) -> None:
+    """Such a lock, with a drift, stood beside friction 15 % too large."""
+    friction, shift = 0.2, 0.3
+    up = np.concatenate([np.linspace(0, 1, 60), np.linspace(1, -1, 120), np.linspace(-1, 0, 60)])
+    torque = np.tile(10.0 * up, 5)
+    cycle = np.repeat(np.arange(1, 6), len(up))
+    left = torque - play(torque, friction)
+    angle = COMPLIANCE * left + GAP / 2 * np.sign(left)
+    rng = np.random.default_rng(6)
+    angle += rng.normal(0, 0.35, len(torque))
+    read = torque + shift + rng.normal(0, 0.02, len(torque))
+    rows = zip(cycle, read, angle, strict=True)
+    path = tmp_path / "sweep.csv"
+    text = "".join(f"{c},{i / 2},{t:.4f},{a:.3f}\n" for i, (c, t, a) in enumerate(rows))
+    path.write_text("cycle,time_s,torque_Nm,angle_arcsec\n" + text, encoding="utf-8")
+    causes = {c.id: c for c in diagnose_file(DESIGN, path, 31_300.0, 43_000.0).causes}
+    assert causes.keys() == {"friction_hysteresis", "torque_offset"}
+    assert causes["friction_hysteresis"].magnitude == pytest.approx(
+        2 * friction * COMPLIANCE, rel=0.05
+    )
+    # rows of the crossing stand 0.17 N·m apart: their half
+    assert causes["torque_offset"].magnitude == pytest.approx(shift, abs=0.09)
