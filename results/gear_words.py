@@ -67,7 +67,8 @@ def _warning(warning: GearWarning) -> str:
                 "rated torque: teeth and rim are not elastic there"
             )
         case EarlyEnd(end, torque, rated):
-            return f"{ENDS[end]} at about {_rounded(torque)} N·m, below the rated torque of {plain_number(rated, 4)} N·m"
+            said = f"{ENDS[end]} at about {_rounded(torque)} N·m"
+            return f"{said}, below the rated torque of {plain_number(rated, 4)} N·m"
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
@@ -132,8 +133,8 @@ def _note(note: GearNote) -> str:
             )
         case TwoTorques(load, lost_motion):
             return (
-                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {plain_number(lost_motion, 4)} N·m, "
-                f"{LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
+                f"the terms are at load.torque_Nm = {load:g}, the lost motion at "
+                f"{plain_number(lost_motion, 4)} N·m, {LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
             )
         case JointClearances(alone, term):
             return (

@@ -17,6 +17,7 @@ The rules of the verdict for the first three are in `decision.py`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -85,6 +86,14 @@ class Diagnosis:
         if self.sweep is not None:
             return self.sweep.explained.identified.fit.calibration
         return self.end_points.calibration if self.end_points is not None else None
+
+    @property
+    def calibrations(self) -> Mapping[str, Calibration]:
+        """The same of each unit, where a sweep has several."""
+        if self.sweep is None or not isinstance(self.measurement, Sweep):
+            return {}
+        names, fit = self.measurement.units, self.sweep.explained.identified.fit
+        return {n: fit.calibration_of(u) for u, n in enumerate(names)} if len(names) > 1 else {}
 
     @property
     def verdict(self) -> Verdict:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexspline.geometry.listed import listed
-from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS
+from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS, FarOff
 from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -59,13 +59,27 @@ def summary(diagnosis: Diagnosis) -> str:
 
 
 def _far_off(diagnosis: Diagnosis) -> str:
-    """Calibrated quantities more than FAR_DEVIATIONS off, whatever else is named; "" of none."""
-    calibration = diagnosis.calibration
-    far = () if calibration is None else calibration.far_off(diagnosis.prediction)
-    return "; the ".join(
-        f"{f.quantity}, {plus_minus(f.measured.value, f.measured.std)} {FAR_UNITS[f.quantity]}, lies "
-        f"{f.deviations:.1f} of its stated deviations from the simulated one"
-        for f in far
+    """Calibrated quantities more than FAR_DEVIATIONS off, whatever else is named; "" of none.
+
+    Of several units what they have in common, else each one's own.
+    """
+    common = {} if diagnosis.calibration is None else {"": diagnosis.calibration}
+    for calibrations in (common, diagnosis.calibrations):
+        far = [
+            (f" of unit {name}" if name else "", off)
+            for name, calibration in calibrations.items()
+            for off in calibration.far_off(diagnosis.prediction)
+        ]
+        if far:
+            return "; the ".join(f"{off.quantity}{of}, {_how_far(off)}" for of, off in far)
+    return ""
+
+
+def _how_far(off: FarOff) -> str:
+    value = plus_minus(off.measured.value, off.measured.std)
+    return (
+        f"{value} {FAR_UNITS[off.quantity]}, lies {off.deviations:.1f} of its stated deviations from the "
+        "simulated one"
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import hypot, sqrt
 
 import numpy as np
 
@@ -67,17 +67,26 @@ class SweepFit:
 
     @property
     def calibration(self) -> Calibration:
-        """Gap and compliance without the effects found, by the posterior."""
-        p, mean, k = self.rig.prediction, self.posterior.mean, self.units
-        std = np.sqrt(np.diag(self.posterior.covariance))
+        """Gap and compliance without the effects found, by the posterior: what units have in common."""
+        return self._calibrated((self.units,))
+
+    def calibration_of(self, unit: int) -> Calibration:
+        """That of one of several units."""
+        return self._calibrated((self.units, self.units + 2 + 2 * unit))
+
+    def _calibrated(self, places: tuple[int, ...]) -> Calibration:
+        """By the sums of the changes that begin at some places of the posterior: of the compliance, then of
+        the gap."""
+        p, (slope, gap) = self.rig.prediction, np.array(places) + np.arange(2)[:, None]
+        mean, covariance = self.posterior.mean, self.posterior.covariance
+        std = [sqrt(max(covariance[np.ix_(at, at)].sum(), 0.0)) for at in (slope, gap)]
         wind_up = 2 * float(np.abs(self.added(HARDENING)).max(initial=0.0))
         return Calibration(
             Estimate(
-                p.gap_arcsec + float(mean[k + 1]),
-                hypot(std[k + 1], GAP_BESIDE_WIND_UP * wind_up),
+                p.gap_arcsec + float(mean[gap].sum()), hypot(std[1], GAP_BESIDE_WIND_UP * wind_up)
             ),
             bool(self.posterior.terms),
-            Estimate(p.compliance + float(mean[k]), float(std[k])),
+            Estimate(p.compliance + float(mean[slope].sum()), std[0]),
         )
 
     def measured_rig(self, mean: np.ndarray | None = None) -> FitContext:

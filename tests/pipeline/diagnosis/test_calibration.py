@@ -102,3 +102,23 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
     assert "agree" not in table
     assert "No effect" not in table
     assert "(simulated 72 ± 13, +3.5 standard deviations)" in table
+
+
+def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: Path) -> None:
+    """Of four units one has a gap 5 of the stated deviations too wide."""
+    phase = (np.arange(180) + 0.5) / 60
+    torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
+    compliance = (1 / 31300 + 1 / 43000) * ARCSEC_PER_RAD
+    prediction = prediction_of(DESIGN, 31300.0, 43000.0)
+    rng, lines = np.random.default_rng(1), []
+    for unit, off in zip("ABCD", (0.5, -0.3, -0.4, 5.0), strict=True):
+        gap = prediction.gap_arcsec + off * prediction.gap_std_arcsec
+        angle = compliance * torque + gap / 2 * np.sign(torque) + rng.normal(0, 1.0, 180)
+        rows = zip(60 * phase, phase.astype(int), torque, angle, strict=True)
+        lines += [f"{unit},{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows]
+    csv = tmp_path / "units.csv"
+    csv.write_text("unit,time_s,cycle,torque_Nm,angle_arcsec\n" + "".join(lines))
+    said = summary(diagnose_file(DESIGN, csv, 31300.0, 43000.0))
+    assert "gap of unit D" in said
+    assert " 5.0 of its stated deviations" in said
+    assert "unit A" not in said
