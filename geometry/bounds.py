@@ -72,7 +72,8 @@ def beside(
 ) -> str:
     """What makes no step, or a visible one, beside another length: ``0.4 (name) or from … to …``.
 
-    A level of more digits is called by its name. `step` is the smallest that counts, `low` and `high` the ends of all; with `zero`, 0 is below `low`.
+    A level of more digits is called by its name. `step` is the smallest that counts, `low` and `high` the
+    ends of all; with `zero`, 0 is below `low`.
     """
     found = []
     if low <= level <= high or (zero and level == 0):

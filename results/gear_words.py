@@ -134,7 +134,8 @@ def _note(note: GearNote) -> str:
         case TwoTorques(load, lost_motion):
             return (
                 f"the terms are at load.torque_Nm = {load:g}, the lost motion at "
-                f"{plain_number(lost_motion, 4)} N·m, {LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
+                f"{plain_number(lost_motion, 4)} N·m, {LOST_MOTION_TORQUE}: the terms' sum is not the lost "
+                "motion"
             )
         case JointClearances(alone, term):
             return (
