@@ -99,23 +99,33 @@ def with_shapes(
 ) -> GaussianEvidence:
     """The race with further shapes, each beside a term of the same cause; known ones are skipped."""
     known = {shape_key(t.owner, t.shape) for t in old.terms}
-    columns, terms, blocks = old.columns, list(old.terms), []
-    width = columns.all.shape[1]
+    more, blocks = [], []
     for like, shape in shapes:
         key = shape_key(like.owner, shape)
         if like.cause is None or key in known:
             continue
         known.add(key)
-        block = like.cause.columns(shape, columns.rig.history)
-        k = block.shape[1]
-        spread = np.full(k, like.cause.spread(shape, columns.rig))
-        terms.append(replace(like, shape=shape, at=slice(width, width + k), prior=spread))
-        blocks.append(block.astype(np.float32))
-        width += k
-    if not blocks:
+        block = like.cause.columns(shape, old.columns.rig.history)
+        spread = np.full(block.shape[1], like.cause.spread(shape, old.columns.rig))
+        more.append(replace(like, shape=shape, prior=spread))
+        blocks.append(block)
+    if not more:
         return old
-    new = np.hstack(blocks)
-    prior = np.concatenate([t.prior for t in terms[len(old.terms) :]])
+    found = with_terms(old, more, blocks)
+    tuned_from = len(old.terms) if old.columns.tuned_from is None else old.columns.tuned_from
+    return replace(found, columns=replace(found.columns, tuned_from=tuned_from))
+
+
+def with_terms(
+    old: GaussianEvidence, more: Sequence[Regressor], blocks: Sequence[np.ndarray]
+) -> GaussianEvidence:
+    """The race with further terms, of these columns (n, k) each; where the terms stand is found here."""
+    columns, width, terms = old.columns, old.columns.all.shape[1], list(old.terms)
+    for term, block in zip(more, blocks, strict=True):
+        terms.append(replace(term, at=slice(width, width + block.shape[1])))
+        width += block.shape[1]
+    new = np.hstack(blocks).astype(np.float32)
+    prior = np.concatenate([t.prior for t in more])
     x = old.whitened(new) * prior
     cross = old.base.T @ x
     solved = np.linalg.solve(old.base_gram, np.column_stack([old.base_right, cross]))
@@ -123,12 +133,7 @@ def with_shapes(
     own = x.T @ x - cross.T @ solved[:, 1:]
     return replace(
         old,
-        columns=replace(
-            columns,
-            all=np.hstack([columns.all, new]),
-            terms=tuple(terms),
-            tuned_from=len(old.terms) if columns.tuned_from is None else columns.tuned_from,
-        ),
+        columns=replace(columns, all=np.hstack([columns.all, new]), terms=tuple(terms)),
         gram=np.block([[old.gram, mixed], [mixed.T, own]]),
         right=np.concatenate([old.right, x.T @ old.y - cross.T @ solved[:, 0]]),
         scale=np.concatenate([old.scale, prior]),

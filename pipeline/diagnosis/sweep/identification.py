@@ -9,7 +9,11 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import LINEAR, SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms, rms_together
+from flexspline.pipeline.diagnosis.sweep.owner_rms import (
+    owner_rms,
+    rms_beyond_calibration,
+    rms_together,
+)
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import fits_noise, plausible
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.rivals import rivals_of
@@ -28,7 +32,8 @@ STAND_IN_NATS = 3.0
 the nuisance term, which costs 4.5 more, is not the one."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
-has but one shape."""
+has but one shape. What zero, compliance and gap can be is no part of that rms: a hardening is mostly a
+straight spring, which misses nothing."""
 MORE_WITHOUT = 2
 """Terms that a set without a cause may have more than the best set: another law takes two or three elements
 for one."""
@@ -79,7 +84,8 @@ def identify(search: Search, beside: bool = False) -> Identification:
     ahead = {FRICTION} if evidence.columns.ahead else set()
     rms = owner_rms(fit, sorted(best.owners | ahead))
     held = best.named(evidence) | ahead
-    largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
+    shaped = [c for c in held if not known_causes()[c].exact]
+    largest = max((rms_beyond_calibration(fit, c) for c in shaped), default=0.0)
     doubt = SizeDoubt.of(fit)
 
     def is_sure(cause: str) -> bool:  # of one shape: that it is there is sure where its size is not

@@ -15,6 +15,14 @@ def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
     return {owner: rms_together(fit, (owner,)) for owner in owners}
 
 
+def rms_beyond_calibration(fit: SweepFit, owner: str) -> float:
+    """Rms [arcsec] of what an owner adds, less what zeros, compliance and gap can be of it."""
+    kept, columns = fit.evidence.kept, fit.evidence.columns.base
+    added = fit.added(owner)[kept]
+    straight = columns[kept][:, : fit.units + 2]
+    return rms(added - straight @ np.linalg.lstsq(straight, added, rcond=None)[0])
+
+
 def rms_together(fit: SweepFit, owners: Sequence[str]) -> float:
     """Rms [arcsec] of what owners add together over the kept rows, each unit's mean removed."""
     kept, unit = fit.evidence.kept, fit.rig.history.unit

@@ -51,7 +51,13 @@ def diagnosed(warmth: Course, zero: Course, folder: Path) -> Diagnosis:
     return diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), path, 31329.0, 43339.0)
 
 
-@pytest.mark.parametrize("zero", [lambda share: PER_KELVIN * rises(share), of_time])
+def late(share: np.ndarray) -> np.ndarray:
+    """1.5 arcsec/K of a gear that warms a tenth of the record behind the sensor: u − τ(1 − e^(−u/τ)) of a
+    warmth that rises with u."""
+    return PER_KELVIN * 12 * (share - 0.1 * (1 - np.exp(-share / 0.1)))
+
+
+@pytest.mark.parametrize("zero", [lambda share: PER_KELVIN * rises(share), of_time, late])
 def test_time_and_a_steady_rise_are_not_told_apart(zero: Course, tmp_path: Path) -> None:
     found = diagnosed(rises, zero, tmp_path)
     (cause,) = found.causes
