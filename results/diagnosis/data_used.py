@@ -43,9 +43,9 @@ def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def _rows(prepared: PreparedSweep) -> dict[str, Any]:
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
-    wrong = sum(w.rows_left_out for w in prepared.sweep.wrong)
+    wrong, held = sum(w.rows_left_out for w in prepared.sweep.wrong), prepared.sweep.held_rows
     measured = counts.total if averaging is None else averaging.rows_read
-    record: dict[str, Any] = {"read": measured + wrong}
+    record: dict[str, Any] = {"read": measured + wrong + held}
     if averaging is not None:
         record |= {"averaged": averaging.rows_averaged, "means": counts.total}
     return record | {
@@ -55,6 +55,7 @@ def _rows(prepared: PreparedSweep) -> dict[str, Any]:
             "torque_reversal": counts.turning,
             "before_first_reversal": counts.settling,
             "outlier": counts.outliers + wrong,
+            **({"held_reading": held} if held else {}),
         },
     }
 

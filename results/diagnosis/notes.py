@@ -76,7 +76,17 @@ def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
     measured = diagnosis.measurement
     if not isinstance(measured, Sweep):
         return []
-    return wrong_notes(measured.wrong)
+    return [*wrong_notes(measured.wrong), *_held_rows(measured.held_rows)]
+
+
+def _held_rows(count: int) -> list[str]:
+    """That the angle's channel is slower than the rows."""
+    if not count:
+        return []
+    return [
+        f"the angle is read more slowly than rows are written: {count} rows that repeat the angle before "
+        "are left out, as the torque has gone on since"
+    ]
 
 
 def _ratios(causes: Iterable[NamedCause]) -> list[str]:

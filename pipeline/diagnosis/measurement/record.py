@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
+from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
@@ -59,6 +60,8 @@ class Sweep:
     """None where the rows are those of the file."""
     wrong: tuple[WrongReadings, ...] = ()
     """Readings whose rows were left out."""
+    held_rows: int = 0
+    """Rows left out, as a slow channel's angle repeats the one before."""
     went_to: np.ndarray | None = None
     """Of each data row of the file, the row here that it is or went into, −1 where it was left out; None
     where the rows are those of the file."""
@@ -153,7 +156,8 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
 
 def _sweep(as_read: MeasuredTable) -> Sweep:
     table, wrong = without_wrong(as_read)
-    n = len(table)
+    held = held_rows(table)
+    table, n = table.rows(~held), int((~held).sum())
     if n < FEWEST_SWEEP_ROWS:
         raise table.refuse(
             n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}"
@@ -169,7 +173,7 @@ def _sweep(as_read: MeasuredTable) -> Sweep:
     return Sweep(
         table.path, history, table.numbers["angle_arcsec"], found.units, found.cycles,
         table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
-        went_to=went_to,
+        held_rows=int(held.sum()), went_to=went_to,
     )  # fmt: skip
 
 
