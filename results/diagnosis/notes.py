@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.measurement.torque_step import torque_step_Nm
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -18,6 +19,7 @@ from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.rounding import of_torque_step_arcsec
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
@@ -138,6 +140,7 @@ def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> lis
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
     found += _encoder_notes(prepared)
+    found += _torque_step_notes(explained)
     found += _noise_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
@@ -170,6 +173,18 @@ def _encoder_notes(prepared: PreparedSweep) -> list[str]:
         f"the angle is read in steps of {step:.3g} arcsec: what rounding leaves, "
         f"{rounding:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or a finer "
         "encoder, would show less of it"
+    ]
+
+
+def _torque_step_notes(explained: ExplainedSweep) -> list[str]:
+    """That the torque is read in coarse steps, where that is more than the angle's noise."""
+    prepared = explained.prepared
+    rounding = of_torque_step_arcsec(prepared, explained.identified.fit)
+    if rounding**2 < prepared.noise.white / 2:
+        return []
+    return [
+        f"the torque is read in steps of {torque_step_Nm(prepared.sweep.history):.3g} N·m: what rounding "
+        f"leaves, {rounding:.2g} arcsec rms, cannot be told from an effect of the torque"
     ]
 
 

@@ -33,7 +33,6 @@ from dataclasses import dataclass
 from math import hypot
 
 from flexspline.pipeline.diagnosis.decision import Decision, decided, overruled
-from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
@@ -65,6 +64,7 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     ChannelTest,
     channel_tests,
 )
+from flexspline.pipeline.diagnosis.sweep.rounding import of_torque_step_arcsec, saw_tooth_arcsec
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
@@ -102,7 +102,7 @@ def diagnose_sweep(
     if (hidden := drowned(explained)) is not None:
         return _insufficient(hidden), None
     causes = named_causes(explained)
-    rounding = rounding_arcsec(sweep.angle_arcsec, explained.prepared.noise.white)
+    rounding = saw_tooth_arcsec(explained.prepared, identified.fit)
     tests = [
         test
         for test in channel_tests(explained.prepared, identified.fit)
@@ -114,6 +114,11 @@ def diagnose_sweep(
             for test in (jumps_of, stuck_of, scatter_along_travel)
         )
     )
+    # the encoder's step is known to each of these tests
+    if jumps is not None and jumps.rms_arcsec < of_torque_step_arcsec(
+        explained.prepared, identified.fit
+    ):
+        jumps = None
     again = repeated_misfit(explained.prepared, identified.fit)
     told = {name for c in causes for name in (c.id, *c.alternatives)}
     if not causes:  # beside one, which may be a part of the saw-tooth, it stays unexplained

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
-from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -20,6 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     ChannelTest,
     Residual,
 )
+from flexspline.pipeline.diagnosis.sweep.rounding import saw_tooth_arcsec
 
 PLACE_WIDTHS = (0.01, 0.02, 0.05)
 """Of the largest torque: a place is so wide; the first that gives no more than `MOST_TORQUE_PLACES`."""
@@ -32,14 +32,14 @@ FEWEST_RETURNS = 3
 def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | None:
     """The misfit that comes back; None where there is none beyond doubt.
 
-    Nor where an encoder's step or the torque's noise may do as much: a loop in the torque without its noise
+    Nor where the rounding of readings or the torque's noise may do as much: a loop in the torque without its noise
     is a little another one.
     """
     codes = _places(prepared)
     if codes is None:
         return None
     found = Residual.of(prepared, fit).tested("torque_Nm", codes)
-    rounding = rounding_arcsec(prepared.sweep.angle_arcsec, prepared.noise.white)
+    rounding = saw_tooth_arcsec(prepared, fit)
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
     if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding, of_torque):
         return None

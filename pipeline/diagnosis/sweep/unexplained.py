@@ -21,7 +21,7 @@ REMAINDER = (UnnamedForm("remainder"),)
 
 
 def made_by_rounding(identified: Identification, rounding_arcsec: float) -> frozenset[str]:
-    """Owners of the best set's ripples, where they are together no more than an encoder's rounding leaves."""
+    """Owners of the best set's ripples, where they are together no more than rounding leaves."""
     ripples = [owner for owner in RIPPLED if owner in identified.rms]
     together = hypot(*(identified.rms[owner] for owner in ripples))
     return frozenset(ripples if together < rounding_arcsec else ())
