@@ -27,10 +27,12 @@ from flexspline.results.diagnosis.reading import heads, reading_notes, wrong_not
 from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import grouped, signed
 
 FINEST_ENCODER = 1e-5
 """Step over the twist's span: finer ones, 29 bits a turn at 200 arcsec, are a file's last digits."""
+UNITS_APART_PCT = 1.0
+"""Of their compliance, from which each unit's own is said: what clamps and bolts differ by."""
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
@@ -106,7 +108,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
         return (
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
-            *own_gap_notes(diagnosis.sweep.model),
+            *unit_size_notes(diagnosis.sweep.model),
             *of_record,
         )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
@@ -213,14 +215,19 @@ def _unit_notes(explained: ExplainedSweep) -> list[str]:
     return found
 
 
-def own_gap_notes(model: ExtendedModel) -> list[str]:
-    """The gap of each unit, where there are several: `calibrated` has what they have in common."""
+def unit_size_notes(model: ExtendedModel) -> list[str]:
+    """Gap and compliance of each unit, where there are several: `calibrated` has what they have in common."""
     if len(model.own) < 2:
         return []
     gaps = {unit: model.gap_arcsec + gap for unit, (_, gap) in model.own.items()}
     each = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
     apart = max(gaps.values()) - min(gaps.values())
-    return [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
+    found = [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
+    softer = {u: 100 * compliance / model.compliance for u, (compliance, _) in model.own.items()}
+    if max(softer.values()) - min(softer.values()) > UNITS_APART_PCT:
+        each = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
+        found.append(f"compliance of each unit beside what they have in common: {each}")
+    return found
 
 
 def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:

@@ -38,7 +38,8 @@ def sure_words(cause: NamedCause) -> str:
     words = next((words for least, words in EVIDENCE_WORDS if cause.evidence_nats >= least), "weak")
     if cause.or_temperature:
         words += ", but not of which"
-    return words if cause.deviations >= SIZE_KNOWN else f"{words}, size uncertain"
+    known = cause.deviations >= SIZE_KNOWN or _is_wider(cause)  # of a loop that closes at T = 0
+    return words if known else f"{words}, size uncertain"
 
 
 def odds_words(nats: float) -> str:

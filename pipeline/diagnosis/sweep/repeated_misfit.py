@@ -32,8 +32,8 @@ FEWEST_RETURNS = 3
 def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | None:
     """The misfit that comes back; None where there is none beyond doubt.
 
-    Nor where the rounding of readings or the torque's noise may do as much: a loop in the torque without its noise
-    is a little another one.
+    Nor where rounding or the torque's noise may do as much: a loop in the torque without its noise is a
+    little another one.
     """
     codes = _places(prepared)
     if codes is None:

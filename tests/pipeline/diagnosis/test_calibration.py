@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from re import findall
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_r
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 from flexspline.results.diagnosis.console import diagnosis_table
+from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 
 SIGMA = 0.5
@@ -105,7 +107,7 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
 
 
 def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: Path) -> None:
-    """Of four units one has a gap 5 of the stated deviations too wide."""
+    """Of four units one has a gap 5 of the stated deviations too wide, and is 3 % softer."""
     phase = (np.arange(180) + 0.5) / 60
     torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
     compliance = (1 / 31300 + 1 / 43000) * ARCSEC_PER_RAD
@@ -113,12 +115,19 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     rng, lines = np.random.default_rng(1), []
     for unit, off in zip("ABCD", (0.5, -0.3, -0.4, 5.0), strict=True):
         gap = prediction.gap_arcsec + off * prediction.gap_std_arcsec
-        angle = compliance * torque + gap / 2 * np.sign(torque) + rng.normal(0, 1.0, 180)
+        own = compliance * (1.03 if unit == "D" else 1.0)
+        angle = own * torque + gap / 2 * np.sign(torque) + rng.normal(0, 1.0, 180)
         rows = zip(60 * phase, phase.astype(int), torque, angle, strict=True)
         lines += [f"{unit},{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows]
     csv = tmp_path / "units.csv"
     csv.write_text("unit,time_s,cycle,torque_Nm,angle_arcsec\n" + "".join(lines))
-    said = summary(diagnose_file(DESIGN, csv, 31300.0, 43000.0))
+    found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
+    said = summary(found)
     assert "gap of unit D" in said
     assert " 5.0 of its stated deviations" in said
     assert "unit A" not in said
+    (softer,) = [n for n in notes(found) if n.startswith("compliance of each unit")]
+    each = {
+        u: float(v.replace("\N{MINUS SIGN}", "-")) for u, v in findall(r"([A-D]) (\S+) %", softer)
+    }
+    assert each["D"] - each["A"] == pytest.approx(3.0, abs=0.3)
