@@ -116,7 +116,7 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     for unit, off in zip("ABCD", (0.5, -0.3, -0.4, 5.0), strict=True):
         gap = prediction.gap_arcsec + off * prediction.gap_std_arcsec
         own = compliance * (1.03 if unit == "D" else 1.0)
-        angle = own * torque + gap / 2 * np.sign(torque) + rng.normal(0, 1.0, 180)
+        angle = own * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.2, 180)
         rows = zip(60 * phase, phase.astype(int), torque, angle, strict=True)
         lines += [f"{unit},{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows]
     csv = tmp_path / "units.csv"
@@ -130,4 +130,5 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     each = {
         u: float(v.replace("\N{MINUS SIGN}", "-")) for u, v in findall(r"([A-D]) (\S+) %", softer)
     }
-    assert each["D"] - each["A"] == pytest.approx(3.0, abs=0.3)
+    # 0.2 arcsec in 180 rows, 0.58 N·m rms about either side's mean: 0.23 % of the slope each
+    assert each["D"] - each["A"] == pytest.approx(3.0, abs=3 * 0.33)
