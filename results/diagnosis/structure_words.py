@@ -68,7 +68,7 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
 }
 """By kind and channel."""
 ANYWHERE: Mapping[FormKind, str] = {
-    "jumps": "jumps with the torque's motion: something sticks and breaks away, or friction has another "
+    "jumps": "jumps with the torque's motion; something sticks and breaks away, or friction has another "
     "form",
     "comes_back": "a misfit at the same torques in every cycle",
     "remainder": "what the best model leaves",
