@@ -44,6 +44,21 @@ def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.Monk
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
 
 
+def test_edges_stay_where_longer_ones_leave_as_many_elements(tmp_path: Path) -> None:
+    """Holes 2.2 mm apart beside a step of 17 mm ask for 15 000 elements, however long the others are."""
+    stepped = DESIGN.changed({
+        "solver.tolerance_pct": 0.5,
+        "shaft.segment[1].outer_diameter_mm": 17.0,
+        "shaft.grip_length_mm": 10.0,
+    })  # fmt: skip
+    shaft = AnalysisContext(stepped, Cache(tmp_path), Progress()).part("shaft")
+    found = part_stiffness.part_stiffness(shaft)
+    meshes = [level.elements for level in found.levels]
+    assert meshes[0] > solid_torsion.FIRST_ELEMENTS
+    assert sorted(set(meshes)) == meshes  # each mesh is finer than the one before
+    assert found.half_width <= 0.005
+
+
 @pytest.mark.parametrize("kind", ["layered", "tetwild"])
 def test_a_sweep_that_fails_when_refined_is_left_altogether(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
