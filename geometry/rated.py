@@ -20,6 +20,10 @@ RATED_WHY = (
     f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes at "
     "ratio 100"
 )
+STEEL_GPa, SOFTEST_STEEL_GPa = 206.0, 150.0
+"""Young's modulus of those gears, and what no steel's is below: a gear of titanium, aluminium or plastic is
+assumed to carry as much less as it is softer, which bends it to the same shape. With a catalogue's torque a
+plastic gear would turn by six teeth."""
 STRONGEST_Nm_per_mm3 = 3.2e-3
 """The largest of these four, size 20."""
 UNUSUAL = 3.0
@@ -55,8 +59,12 @@ def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
     stated = design.gear.rated_torque_Nm
     if stated is not None:
         return stated, ()
-    value = rated_in_proportion(design.gear.pitch_radius_mm)
-    return value, (Assumed("gear.rated_torque_Nm", value, RATED_WHY),)
+    value, why = rated_in_proportion(design.gear.pitch_radius_mm), RATED_WHY
+    modulus_GPa = design.material.flexspline.youngs_modulus_GPa
+    if modulus_GPa < SOFTEST_STEEL_GPa:
+        value *= modulus_GPa / STEEL_GPa
+        why += f", which are of steel; times {modulus_GPa:g} over {STEEL_GPa:g} GPa"
+    return value, (Assumed("gear.rated_torque_Nm", value, why),)
 
 
 def rated_faults(design: Design) -> Iterator[DesignError]:

@@ -28,7 +28,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if found and share > 0:
         yield Paragraph(
             f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
-            "the noise; no model can do better than the noise."
+            "the noise; no model does better than the noise, but by chance."
         )
 
 
@@ -61,7 +61,7 @@ def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
     if found:
         yield "With the causes found", gain.rmse_after
-    yield f"{capital(noise_words(gain))}, the lower limit", gain.noise_floor
+    yield f"{capital(noise_words(gain))}, the least to expect", gain.noise_floor
 
 
 def _percent(share: float) -> str:
