@@ -127,6 +127,22 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
     assert "upper end of its span in wall thickness" in said
 
 
+def test_a_neighbour_in_the_grid_that_could_not_be_built_is_said() -> None:
+    """The stiffest wall allowed, 0.4 mm, is no constraint's: the next, 0.6 mm, gave no design."""
+    text = STUDY.replace("min = 0.3, max = 0.5", "values = [0.3, 0.4, 0.6]").replace(
+        "sobol", "grid"
+    )
+    result = result_of(text.replace("300.0", "340.0"))
+    first, second = (
+        Row(i, {WALL: w}, r.outcome)
+        for i, (w, r) in enumerate(zip((0.3, 0.4), result.rows, strict=False))
+    )
+    third = Row(2, {WALL: 0.6}, Outcome(faults=("too thick",)))
+    assert limits(replace(result, rows=(first, second, third))) == [
+        "Beside design 1, the next wall thickness of the grid, 0.6\u202fmm, could not be built or solved."
+    ]
+
+
 def test_without_an_objective_the_usual_figures_are_followed() -> None:
     said = influences(result_of(STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")))
     assert [s.split(",")[0] for s in said] == [
