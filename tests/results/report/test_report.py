@@ -9,16 +9,20 @@ from PIL import Image
 from pypdf import PdfReader
 
 from flexspline.results.numbers import THIN
+from flexspline.results.report.budget import budget
 from flexspline.results.report.document import (
     Break,
     Document,
+    Formula,
     Heading,
     Paragraph,
     Picture,
     Pictures,
+    Table,
 )
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.report.spans import plain, symbol, worded
+from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.write import ReportError, write_report
 
 NASTY = [
@@ -108,6 +112,18 @@ def test_series_bounds_use_the_k_b_of_the_sum():
     low, high = content().K_series_bounds_Nm_per_rad
     assert low == pytest.approx(1 / (1 / 31607.0 + 1 / 35263.0))
     assert high == pytest.approx(1 / (1 / 31703.0 + 1 / 35317.0))
+
+
+@pytest.mark.parametrize(("case", "K_b"), [("uniform", "K_b"), ("lobes", "K_b,lobes")])
+def test_the_sum_names_the_k_b_of_its_load_case(case, K_b):
+    """In the paragraph of totals, in the formula as drawn and as spoken, and in the table of terms."""
+    solver = design().solver.model_copy(update={"load_case": case})
+    shown = content(design=design().model_copy(update={"solver": solver}))
+    formula, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Formula))
+    terms, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Table))
+    for said in (totals_and_terms(shown), formula.nodes, terms.rows):
+        assert set(re.findall(r"K_b[,a-z]*", str(said))) == {K_b}
+    assert f"2 T_L / {K_b} + " in formula.spoken
 
 
 def test_failure_leaves_the_old_report(tmp_path):
