@@ -25,6 +25,7 @@ from flexspline.results.report.pdf import pdf_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import plain, symbol, worded
 from flexspline.results.report.spans import words as spans_of
+from flexspline.results.report.tables import answers
 from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.write import ReportError, write_report
 
@@ -119,12 +120,13 @@ def test_series_bounds_use_the_k_b_of_the_sum():
 
 @pytest.mark.parametrize(("case", "K_b"), [("uniform", "K_b"), ("lobes", "K_b,lobes")])
 def test_the_sum_names_the_k_b_of_its_load_case(case, K_b):
-    """In the paragraph of totals, in the formula as drawn and as spoken, and in the table of terms."""
+    """In the totals, beside the series stiffness, in the formula as drawn and spoken, in the terms."""
     solver = design().solver.model_copy(update={"load_case": case})
     shown = content(design=design().model_copy(update={"solver": solver}))
     formula, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Formula))
     terms, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Table))
-    for said in (totals_and_terms(shown), formula.nodes, terms.rows):
+    _, series, *_ = answers(shown)
+    for said in (totals_and_terms(shown), series["note"], formula.nodes, terms.rows):
         assert set(re.findall(r"K_b[,a-z]*", str(said))) == {K_b}
     assert f"2 T_L / {K_b} + " in formula.spoken
 
