@@ -9,6 +9,7 @@ from pathlib import Path
 from flexspline.geometry.errors import FlexsplineError
 
 STDIN = "-"
+DEVICES = Path("/dev")
 KINDS = (
     (stat.S_ISDIR, "is a directory"),
     (stat.S_ISFIFO, "is a pipe; write its content to a file first"),
@@ -48,6 +49,8 @@ def read_input(path: Path | str, largest_bytes: int, what: str) -> bytes:
         mode = os.fstat(handle).st_mode
         if not stat.S_ISREG(mode):
             raise InputFileError(_kind(mode))
+        if _is_descriptor(Path(path)):
+            raise InputFileError("stands for an open file; name that file itself")
         with os.fdopen(handle, "rb", closefd=False) as file:
             data = file.read(largest_bytes + 1)
         size = max(len(data), os.fstat(handle).st_size)
@@ -58,6 +61,15 @@ def read_input(path: Path | str, largest_bytes: int, what: str) -> bytes:
     if size > largest_bytes:
         raise InputFileError(f"{size} bytes; {what} has at most {largest_bytes} bytes")
     return data
+
+
+def _is_descriptor(path: Path) -> bool:
+    """Whether a name such as /dev/stdin, /dev/fd/3 or /proc/self/fd/0 is a number of an open file.
+
+    Results go beside the file that is named: that folder is the system's.
+    """
+    folder = path.parent.resolve()
+    return folder == DEVICES or (folder.name == "fd" and folder.parts[1] in ("dev", "proc"))
 
 
 def _kind(mode: int) -> str:

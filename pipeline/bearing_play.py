@@ -64,6 +64,8 @@ def working_pressure_angle(play: float, centre_distance: float, pressure_angle: 
     limit = play_limit(centre_distance, pressure_angle)
     if beyond_play_limit(play, limit):
         raise BearingPlayDomainError(play * 1e3, limit * 1e3)
+    if play == 0:
+        return pressure_angle  # arccos of its cosine is off in the last digit: no play would open a gap
     ratio = 2 * centre_distance * cos(pressure_angle) / (2 * centre_distance - play)
     return acos(min(1.0, ratio))
 

@@ -22,7 +22,7 @@ from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
 
 T = TypeVar("T")
-FORMAT = 25
+FORMAT = 26
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

@@ -165,7 +165,14 @@ GearNote = (
     | JointClearances
     | FallingStiffness
     | BucklingTube
-    | Literal["play_beside_stroke", "no_ratcheting", "ratcheting_is_upper", "tube_yields_first"]
+    | Literal[
+        "play_beside_stroke",
+        "no_ratcheting",
+        "ratcheting_is_upper",
+        "tube_yields_first",
+        "tube_buckles_first",
+    ]
 )
 """What was simplified; that play makes the free angle smaller as the stroke is not full, that the gear
-ratchets at no torque, or that the torque at which it does is an upper limit."""
+ratchets at no torque, or that the torque at which it does is an upper limit; that the tube yields before it
+buckles, or buckles before the gear ratchets."""

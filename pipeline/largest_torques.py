@@ -28,6 +28,8 @@ def largest_torques(
         if buckles < rated_Nm:
             warned.append(EarlyEnd("buckles", buckles, rated_Nm))
         noted.append(BucklingTube(buckles, tube.stress_MPa(buckles)))
+        if engaged_Nm is not None and two_digits(buckles) < two_digits(engaged_Nm):
+            noted.append("tube_buckles_first")
     return warned, noted
 
 

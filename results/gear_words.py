@@ -155,7 +155,7 @@ def _note(note: GearNote) -> str:
             return (
                 f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "
                 f"where its shear stress is {_rounded(stress)} MPa; a wall of lower yield stress fails "
-                "earlier"
+                "earlier; catalogues' gears ratchet at 0.3 to 0.8 of their buckling torque"
             )
         case "play_beside_stroke":
             return (
@@ -166,10 +166,15 @@ def _note(note: GearNote) -> str:
             return "no torque was found at which the gear ratchets"
         case "tube_yields_first":
             return "the flexspline's tube is short or thick: it yields before it buckles"
+        case "tube_buckles_first":
+            return (
+                "the flexspline's tube buckles before the gear ratchets: the ratcheting torque lies above "
+                "the buckling torque"
+            )
         case "ratcheting_is_upper":
             return (
                 "the ratcheting torque is an upper limit, as the model is elastic; catalogues' gears ratchet "
-                "at 1/50 (ratio 30) to 1/5 (ratio 160) of it, and at 0.3 to 0.8 of their buckling torque"
+                "at 1/50 (ratio 30) to 1/5 (ratio 160) of it"
             )
         case _:
             assert_never(note)

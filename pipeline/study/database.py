@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.process_id import this_process
-from flexspline.pipeline.study.storage_faults import is_damaged, said
+from flexspline.pipeline.study.storage_faults import OpenedFile, is_damaged, said
 from flexspline.pipeline.study.store import TrialStore
 
 if TYPE_CHECKING:
@@ -61,7 +61,8 @@ def open_trial_store(
                 sampler=sampler,
                 load_if_exists=True,
             )
-            return TrialStore(trials, storage, str(this_process()))
+            file = OpenedFile.of(storage.engine.url)
+            return TrialStore(trials, storage, str(this_process()), file)
         except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
             # two processes that make the tables at once: the second finds them on its next try
             again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)

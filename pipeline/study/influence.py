@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -68,7 +69,7 @@ def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
 def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
     """Ends of spans at which the best design lies, though it would gain beyond them.
 
-    A key of one value has no span.
+    A key of one value has no span, and one that only one built design has tells nothing.
     """
     found: list[OpenEnd] = []
     for key, (low, high) in _spans(result).items():
@@ -79,11 +80,32 @@ def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
 
 
 def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
-    """Figures whose constraints hold the best design back."""
+    """Figures whose constraints hold the best design back: it is near the limit, beyond which a better
+    design was built."""
+    better = [r for r in result.built if result.is_better(r, best)]
     return tuple(
         key for key, limit in result.study.file.constraint.items()
         if -limit.excess(best.outcome.figures[key]) <= AT_END * limit.size
+        and any(limit.excess(r.outcome.figures[key]) > 0 for r in better)
     )  # fmt: skip
+
+
+def unbuilt_neighbours(result: StudyResult, best: Row) -> tuple[tuple[str, float], ...]:
+    """Keys and their values next to the best design's in a grid that gave no design, all else alike.
+
+    Without those towards which the objective is seen to get worse.
+    """
+    if result.study.file.run.method != "grid":
+        return ()
+    found: list[tuple[str, float]] = []
+    for key in _spans(result):
+        for outward in (-1, 1):
+            near, opposite = (_next(result.rows, best, key, way) for way in (outward, -outward))
+            if near is None or near in result.built:
+                continue
+            if opposite not in result.built or not result.is_better(opposite, best):
+                found.append((key, near.values[key]))
+    return tuple(found)
 
 
 def _spans(result: StudyResult) -> dict[str, tuple[float, float]]:
@@ -92,36 +114,46 @@ def _spans(result: StudyResult) -> dict[str, tuple[float, float]]:
     return {key: (low, high) for key, (low, high) in ends.items() if low < high}
 
 
+def _next(rows: Iterable[Row], best: Row, key: str, outward: int) -> Row | None:
+    """The row that differs from the best design in that key alone and is next to it on that side."""
+
+    def step(row: Row) -> float:
+        return outward * (row.values[key] - best.values[key])
+
+    line = (r for r in rows if step(r) > 0 and r.values == {**best.values, key: r.values[key]})
+    return min(line, key=step, default=None)
+
+
 def _may_help(result: StudyResult, best: Row, key: str, outward: int) -> bool:
-    """Whether a wider span may hold a better design: an objective gains that way, or a constraint eases.
+    """Whether an objective is seen to gain that way.
 
-    By the slopes of a plane through all designs built, every dimension in its span's width and every figure
-    in its scatter. True where they are too few for a plane.
+    Against the next design inward that differs in that key alone; without one by the slopes of a plane
+    through all designs built, every dimension in its span's width. Gains count in a figure's scatter per
+    width of the span. Designs too few for a plane show nothing.
     """
-    rows, file = result.built, result.study.file
-    keys = list(_spans(result))
-    if len(rows) < len(keys) + FEWEST_RANKED_ROWS:
-        return True
+    rows, spans = result.built, _spans(result)
+    inward = _next(rows, best, key, -outward)
+    keys = [k for k in spans if len({r.values[k] for r in rows}) > 1]
+    if inward is None and (key not in keys or len(rows) < len(keys) + FEWEST_RANKED_ROWS):
+        return False
+    low, high = spans[key]
     x = np.array([[r.values[k] for k in keys] for r in rows])
-    plane = np.column_stack(
-        [np.ones(len(rows)), (x - x.min(axis=0)) / np.maximum(np.ptp(x, axis=0), SMALLEST_NUMBER)]
+    x = (x - x.min(axis=0)) / np.ptp(x, axis=0)
+    plane = np.column_stack([np.ones(len(rows)), x])
+
+    def gain(figure: str) -> float:
+        y = np.array([r.outcome.figures[figure] for r in rows])
+        if inward is not None:
+            gained = best.outcome.figures[figure] - inward.outcome.figures[figure]
+            slope = gained * (high - low) / abs(best.values[key] - inward.values[key])
+        else:
+            slope = outward * float(np.linalg.lstsq(plane, y, rcond=None)[0][1 + keys.index(key)])
+        return slope / max(float(y.std()), SMALLEST_NUMBER)
+
+    return any(
+        (1 if goal == "maximize" else -1) * gain(figure) > WORTH_DEVIATIONS
+        for figure, goal in result.study.file.objective.items()
     )
-
-    def slope(values: list[float]) -> float:
-        """Standard deviations of a figure per width of the span, outward."""
-        y = np.array(values)
-        fitted = np.linalg.lstsq(plane, y, rcond=None)[0]
-        return outward * float(fitted[1 + keys.index(key)]) / max(float(y.std()), SMALLEST_NUMBER)
-
-    gains = [
-        slope([r.outcome.figures[k] for r in rows]) * (1 if goal == "maximize" else -1)
-        for k, goal in file.objective.items()
-    ]
-    eases = [
-        -slope([file.constraint[k].excess(r.outcome.figures[k]) for r in rows])
-        for k in binding(result, best)
-    ]
-    return any(s > WORTH_DEVIATIONS for s in (*gains, *eases))
 
 
 def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:

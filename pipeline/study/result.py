@@ -107,6 +107,10 @@ class StudyResult:
         at = np.linspace(0, len(front) - 1, count).round().astype(int)
         return tuple(front[i] for i in at)
 
+    def is_better(self, one: Row, other: Row) -> bool:
+        """Whether a design is better in the first objective in which both differ."""
+        return self._costs(one) < self._costs(other)
+
     def _costs(self, row: Row) -> tuple[float, ...]:
         """Objectives, all to be made small."""
         sign = {"minimize": 1.0, "maximize": -1.0}

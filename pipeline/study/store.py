@@ -12,14 +12,14 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, wraps
 from itertools import islice
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
 from flexspline.pipeline.process_id import parsed
 from flexspline.pipeline.study.claims import CLAIM, ROW, Claim, Claims, Row, Try
 from flexspline.pipeline.study.evaluate import Outcome
-from flexspline.pipeline.study.storage_faults import storage_faults
+from flexspline.pipeline.study.storage_faults import OpenedFile, storage_faults
 from flexspline.pipeline.study.trial_tables import TrialTables, Values
 
 if TYPE_CHECKING:
@@ -33,6 +33,23 @@ BEAT_S = 10.0
 """How often a process says that it lives."""
 SILENT_S = 60.0
 """A process that cannot be seen from here, and that said nothing for so long, is gone."""
+
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _plainly(
+    method: Callable[Concatenate[TrialStore, P], T],
+) -> Callable[Concatenate[TrialStore, P], T]:
+    """A method of the store whose faults come in plain words."""
+
+    @wraps(method)
+    def call(self: TrialStore, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        with storage_faults(self.file):
+            return method(self, *args, **kwargs)
+
+    return call
 
 
 @dataclass(frozen=True)
@@ -61,6 +78,8 @@ class TrialStore:
     trials: Trials
     storage: RDBStorage
     owner: str
+    file: OpenedFile | None
+    """None where the storage is no file."""
     _known: Claims = field(default_factory=Claims, init=False)
 
     @cached_property
@@ -72,7 +91,7 @@ class TrialStore:
         known = self._known
         known.take_in(self._tables.changed(connection, known.last_id, known.to_read_again()))
 
-    @storage_faults()
+    @_plainly
     def refresh(self) -> Claims:
         """What is known of the trials, with what other processes did since."""
         with self._tables.reading() as connection:
@@ -88,7 +107,7 @@ class TrialStore:
         known, dead = self.refresh(), self.dead()
         return known.finished > 0 or any(t.claim.owner not in dead for t in known.open())
 
-    @storage_faults()
+    @_plainly
     def claim(
         self,
         size: int,
@@ -138,7 +157,7 @@ class TrialStore:
         tried = [t.values for s, tries in known.tries.items() if s != but for t in tries.values()]
         return tried + [r.values for r in known.rows() if r.slot != but]
 
-    @storage_faults()
+    @_plainly
     def suggested(self, job: ClaimedDesign, over: Mapping[str, BaseDistribution]) -> ClaimedDesign:
         """A claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
         from optuna.trial import Trial
@@ -150,7 +169,7 @@ class TrialStore:
         self._known.add_try(replace(known, values=values))
         return replace(job, values=values)
 
-    @storage_faults()
+    @_plainly
     def finish(self, finished: Sequence[Finished]) -> None:
         """Store rows and close their trials, all in one transaction."""
         told = {
@@ -163,7 +182,7 @@ class TrialStore:
             if f.job.trial_id in closed:
                 self._known.add_row(f.job.number, Row(f.job.slot, f.job.values, f.outcome))
 
-    @storage_faults()
+    @_plainly
     def teach(self, finished: Finished) -> None:
         """Store a row, then close the trial as Optuna does, so that its sampler hears of it; a stop
         between the two loses nothing."""
@@ -175,7 +194,7 @@ class TrialStore:
             self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(finished.outcome))
             self.tell(job.number, finished.objectives)
 
-    @storage_faults()
+    @_plainly
     def tell(self, number: int, values: list[float] | None) -> None:
         """Close a trial: with its objectives, or as failed; closed ones stay as they are."""
         from optuna.exceptions import UpdateFinishedTrialError
@@ -190,12 +209,12 @@ class TrialStore:
         self._known.held.discard(job.trial_id)
         self.tell(job.number, None)
 
-    @storage_faults()
+    @_plainly
     def notes(self) -> dict[str, Any]:
         """What is stored beside the trials, by name."""
         return dict(self.trials.user_attrs)
 
-    @storage_faults()
+    @_plainly
     def note(self, name: str, value: Any) -> None:
         """Store something beside the trials: numbers, texts, lists and tables of them."""
         self.trials.set_user_attr(name, value)

@@ -26,7 +26,6 @@ EXTENDED = "extended.total_arcsec"
 """The sum's key in `result.json`."""
 _DELTA: FormulaNode = ("symbol", "Δ_bl")
 _SHAFT: FormulaNode = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
-_FLEXSPLINE: FormulaNode = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
 _PLAY: FormulaNode = (
     "over",
     [("text", "2"), ("text", "("), ("symbol", "j_bn0"), ("text", "+"), ("symbol", "j′"), ("text", ")")],
@@ -41,14 +40,17 @@ _CIRCLE = (
     + symbol("α")
     + plain(")")
 )
-TERMS: dict[str, Words] = {
-    "shaft": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_e"),
-    "flexspline": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_b"),
-    "flank_clearance": plain("2 ") + symbol("j_bn0") + _CIRCLE,
-    "bearing_play": plain("2 ") + symbol("j′") + _CIRCLE,
-    "total": symbol("Δ_bl"),
-}
-"""Each term's formula, on one line."""
+
+
+def _terms(content: ReportContent) -> dict[str, Words]:
+    """Each term's formula, on one line."""
+    return {
+        "shaft": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_e"),
+        "flexspline": plain("2 ") + symbol("T_L") + plain(" / ") + symbol(content.sum_symbol),
+        "flank_clearance": plain("2 ") + symbol("j_bn0") + _CIRCLE,
+        "bearing_play": plain("2 ") + symbol("j′") + _CIRCLE,
+        "total": symbol("Δ_bl"),
+    }
 
 
 def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
@@ -63,17 +65,19 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         + plain(" and bearing play leave free:")
     )
     plus: FormulaNode = ("text", "+")
+    K_b = content.sum_symbol
+    flexspline: FormulaNode = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", K_b)])
     yield Formula(
-        (_DELTA, ("text", "="), _SHAFT, plus, _FLEXSPLINE, plus, _PLAY),
-        "Δ_bl = 2 T_L / K_e + 2 T_L / K_b + 2 (j_bn0 + j′) / (m z_1 cos α)",
+        (_DELTA, ("text", "="), _SHAFT, plus, flexspline, plus, _PLAY),
+        f"Δ_bl = 2 T_L / K_e + 2 T_L / {K_b} + 2 (j_bn0 + j′) / (m z_1 cos α)",
     )
-    rows = tables.budget(content)
+    rows, formulas = tables.budget(content), _terms(content)
     yield Table(
         columns=(
             Column("Term", grow=1), Column("Formula"), Column("Value", "right"), Column("Unit"),
             Column("Share", "right"),
         ),
-        rows=tuple((b["name"], TERMS[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
+        rows=tuple((b["name"], formulas[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
         caption=f"The four terms and their sum; {spread_sentence(content.backlash)}.",
         strong=len(rows) - 1,
     )  # fmt: skip

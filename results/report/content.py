@@ -13,6 +13,7 @@ from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stiffnesses import series_bounds_Nm_per_rad
+from flexspline.results.quantities import quantity
 from flexspline.results.report.attached import Attachment
 
 
@@ -83,6 +84,11 @@ class ReportContent:
     def K_b_in_sum(self) -> Stiffness:
         """The K_b that `solver.load_case` puts into the sum."""
         return self.stiffnesses[self.design.solver.K_b_in_sum]
+
+    @property
+    def sum_symbol(self) -> str:
+        """Of the K_b in the sum: that of its load case."""
+        return quantity(f"{self.design.solver.K_b_in_sum}_Nm_per_rad").symbol
 
     @property
     def K_series_bounds_Nm_per_rad(self) -> tuple[float, float]:

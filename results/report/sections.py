@@ -208,8 +208,8 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield from shown(
         content,
         roomy,
-        Picture("flexspline_mesh", "Mesh of the flexspline and its named surfaces."),
-        Picture("shaft_mesh", "Mesh of the output shaft and its named surfaces."),
+        Picture("flexspline_mesh", _mesh_of(content, "flexspline", "K_b")),
+        Picture("shaft_mesh", _mesh_of(content, "output shaft", "K_e")),
     )
     solves = tables.solves(content)
     heads = ("Meshes", "Elements", "Unknowns", "Bounds", "Residual", "Energy – work")
@@ -245,6 +245,25 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
                 "are not listed."
             )
         )
+
+
+def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
+    """A mesh's caption: which of the part's stiffnesses, whose names begin alike, are not from that mesh."""
+    said = plain(f"Mesh of the {part} and its named surfaces.")
+    own = {name: s for name, s in content.stiffnesses.items() if name.startswith(letter)}
+    turned = [name for name, s in own.items() if s.model == "axisymmetric"]
+    if not turned:
+        return said
+    return (
+        said
+        + plain(" ")
+        + _listed(quantity(f"{name}_Nm_per_rad").symbol for name in turned)
+        + plain(
+            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this one is for the "
+            "pictures of stress"
+            + (" and the other stiffnesses." if len(turned) < len(own) else ".")
+        )
+    )
 
 
 def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:

@@ -34,7 +34,7 @@ def answers(content: ReportContent) -> list[PrintedRow]:
             content.K_series_Nm_per_rad,
             series.range_text(low, high),
         )
-        | {"note": f"with K_b of load case “{case}”", "kind": bounds_kind(both)}
+        | {"note": f"with {content.sum_symbol} (load case “{case}”)", "kind": bounds_kind(both)}
     )
     notes = stiffness_notes(content.design)
     for name, stiffness in content.stiffnesses.items():

@@ -25,7 +25,7 @@ def totals_and_terms(content: ReportContent) -> Words:
             f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} is of flexspline and shaft alone (1/"
         )
         + symbol(_SERIES.symbol)
-        + worded(" = 1/K_b + 1/K_e); the backlash of ")
+        + worded(f" = 1/{content.sum_symbol} + 1/K_e); the backlash of ")
         + plain(
             f"{_SUM.with_unit(content.backlash.total_arcsec)} adds both clearances to their wind-up ("
         )

@@ -19,6 +19,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.sentences import sentence
+from flexspline.results.study.design_table import MARK, marked_figures
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import LISTED_DESIGNS
 from flexspline.results.study.why import unfollowed
@@ -57,12 +58,14 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
 
 def _borders(result: StudyResult) -> Iterable[str]:
     """Which peaks hang on the stress rule, in how many designs, and what the study does with them."""
+    in_table = marked_figures(result)
     for key in PEAKS:
         rows = [r for r in result.built if key in r.outcome.figures]
         if count := sum(at_border(key, r.outcome.figures) for r in rows):
             used = _used(result, key)
             name = f"{entry(key).name} ({used})" if used else entry(key).name
-            yield f"{name}: in {count} of {len(rows)} designs {BORDER} (†): {MEANING}."
+            mark = f" ({MARK})" if key in in_table else ""
+            yield f"{name}: in {count} of {len(rows)} designs {BORDER}{mark}: {MEANING}."
 
 
 def border_warnings(result: StudyResult) -> Iterable[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain
 from pathlib import Path
 
@@ -26,11 +26,12 @@ from flexspline.results.report.document import (
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, alarm, bold, plain, worded
 from flexspline.results.study.best_stress import VIEW, BestStress
+from flexspline.results.study.design_table import design_table
 from flexspline.results.study.failures import TOLD, causes, untold
-from flexspline.results.study.labels import at_border, entry
+from flexspline.results.study.labels import entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
-from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
+from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
     incomplete,
@@ -39,8 +40,6 @@ from flexspline.results.study.why import (
     misses,
 )
 
-COLUMNS = 5
-"""Best designs side by side."""
 METHODS = {
     "grid": "Every combination of the given values.",
     "sobol": "Designs spread evenly by a scrambled Sobol sequence.",
@@ -55,7 +54,7 @@ CAPTIONS = {
     "pareto.png": "Every design that was built, and the Pareto front.",
     "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
     "constraint allows.",
-    "convergence.png": "Every design in the order chosen, and the best so far.",
+    "convergence.png": "Every design in the order chosen{best_so_far}.",
     "best.png": "The best designs in section.",
     BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
@@ -98,7 +97,7 @@ def study_document(
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
-        *_best(result),
+        *design_table(result),
         *_why(result),
         *_verified(result),
         *((Paragraph(f"No distribution: {result.unscattered}."),) if result.unscattered else ()),
@@ -122,7 +121,8 @@ def study_document(
 
 def _picture(name: str, result: StudyResult) -> Block:
     first = result.pareto[0].slot if name == BEST_STRESS else ""
-    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first)
+    so_far = ", and the best so far" if result.feasible else "; none keeps to every constraint"
+    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first, best_so_far=so_far)
     view = VIEW if name == BEST_STRESS else ""
     return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
 
@@ -159,40 +159,6 @@ def _counts(result: StudyResult) -> str:
     if result.incomplete:
         said += f"; {incomplete(result)}"
     return said + "."
-
-
-def _best(result: StudyResult) -> Iterable[Block]:
-    """A line per varied key and figure: name, then the best designs' values."""
-    file = result.study.file
-    chosen = () if result.about_scatter else result.best(COLUMNS)
-    if not chosen:
-        return
-    begun = () if result.start is None else (result.start.figures,)
-    lines: list[tuple[str, ...]] = []
-    for key in file.vary:
-        q = entry(key)
-        values = (*(result.start_values for _ in begun), *(r.values for r in chosen))
-        lines.append((q.axis, *(q.text(v[key]) if key in v else "" for v in values)))
-    for key in dict.fromkeys([*file.objective, *file.constraint, "flexspline_mass_g"]):
-        q = entry(key)
-        if all(key in r.outcome.figures for r in chosen):
-            lines.append(
-                (q.axis, *(_text(key, f) for f in (*begun, *(r.outcome.figures for r in chosen))))
-            )
-    breaks = start_breaks(result)
-    first = "start (not allowed)" if breaks else "start"
-    heads = (*(first for _ in begun), *(f"design {r.slot}" for r in chosen))
-    yield Heading("The best designs")
-    yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
-    if begun:
-        told = "start: the design that the study began with, solved in the same way"
-        yield Paragraph(f"{told}; it {breaks}." if breaks else f"{told}.")
-
-
-def _text(key: str, figures: Mapping[str, float]) -> str:
-    if key not in figures:  # the start may lack what each row has
-        return ""
-    return entry(key).text(figures[key]) + (" †" if at_border(key, figures) else "")
 
 
 def _verified(result: StudyResult) -> Iterable[Block]:

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
-from flexspline.pipeline.study.influence import binding, open_ends, own_influences
+from flexspline.pipeline.study.influence import (
+    binding,
+    open_ends,
+    own_influences,
+    unbuilt_neighbours,
+)
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
 from flexspline.pipeline.study.study import Study
@@ -56,7 +61,7 @@ def allowed(key: str, limit: Limit) -> str:
 
 
 def limits(result: StudyResult) -> list[str]:
-    """Spans and constraints that hold the best design back."""
+    """Spans, constraints and designs that could not be built, which hold the best design back."""
     said = []
     for best in result.pareto[:1]:
         for at in open_ends(result, best):
@@ -71,6 +76,12 @@ def limits(result: StudyResult) -> list[str]:
                 f"Design {best.slot} is held by the constraint on {q.name}: "
                 f"{q.with_unit(best.outcome.figures[key])}, allowed are "
                 f"{allowed(key, result.study.file.constraint[key])}."
+            )
+        for key, value in unbuilt_neighbours(result, best):
+            q = entry(key)
+            said.append(
+                f"Beside design {best.slot}, the next {q.name} of the grid, {q.with_unit(value)}, could not "
+                "be built or solved."
             )
     return said
 

@@ -126,6 +126,18 @@ def test_beyond_the_limit_is_refused_with_both_numbers() -> None:
         backlash(design_with(bearing={"radial_clearance_um": 30.0}), K_B, K_E)
 
 
+@pytest.mark.parametrize("model", ["involute", "small_displacement"])
+@pytest.mark.parametrize("alpha_deg", [14.5, 20.0, 25.0, 30.0])
+def test_without_clearance_there_is_no_gap(model: str, alpha_deg: float) -> None:
+    """Exactly none, in either model of the play, whatever the pressure angle's cosine rounds to."""
+    design = design_with(
+        bearing={"bearing_play_model": model, "radial_clearance_um": 0.0},
+        gear={"flank_clearance_um": 0.0, "pressure_angle_deg": alpha_deg},
+    )
+    b = backlash(design, K_B, K_E)
+    assert (b.bearing_play_arcsec, b.model_form_arcsec, b.gap_arcsec) == (0.0, 0.0, 0.0)
+
+
 def test_small_displacement_model() -> None:
     small = {"bearing_play_model": "small_displacement"}
     design = design_with(bearing=small)

@@ -120,6 +120,24 @@ def test_process_substitution_says_what_to_do(tmp_path: Path) -> None:
     assert done.stderr.endswith("is a pipe; write its content to a file first\n")
 
 
+@pytest.mark.parametrize("name", ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"])
+def test_a_descriptor_of_a_file_is_refused(name: str, tmp_path: Path) -> None:
+    """Its results would go into /dev/stdin.out; with --out it is refused as a pipe is."""
+    if not Path(name).parent.exists():
+        pytest.skip("not on this system")
+    for out in ((), ("--out", tmp_path / "out")):
+        with CUP.open("rb") as design:
+            done = subprocess.run(
+                [*command("backlash", name, *GIVEN), *map(str, out)], stdin=design, capture_output=True,
+                text=True, check=False, env=environment(tmp_path / "cache"), timeout=WAIT_S,
+            )  # fmt: skip
+        assert done.returncode == 2
+        assert (
+            done.stderr == f"flexspline: {name}: stands for an open file; name that file itself\n"
+        )
+        assert not (tmp_path / "out").exists()
+
+
 def test_a_link_to_a_file_is_read(tmp_path: Path) -> None:
     from flexspline.geometry.load import load_design
 

@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,13 @@ from scipy.stats import spearmanr
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
-from flexspline.pipeline.study.influence import OpenEnd, binding, open_ends, own_influences
+from flexspline.pipeline.study.influence import (
+    OpenEnd,
+    binding,
+    open_ends,
+    own_influences,
+    unbuilt_neighbours,
+)
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 
@@ -78,9 +85,80 @@ def test_an_end_is_open_only_where_the_objective_gains_towards_it(
     assert open_ends(result, best) == (OpenEnd(WALL, 0.5, "upper"),)
 
 
-def test_a_constraint_binds_a_design_at_its_limit() -> None:
-    result = result_of((0.3, 20.0, 3e4 + s, s) for s in (300.0, 395.0, 410.0))
-    assert [binding(result, row) for row in result.rows] == [(), (STRESS,), (STRESS,)]
+@pytest.mark.parametrize(
+    ("stresses", "held"),
+    [
+        ((300.0, 395.0, 410.0), (STRESS,)),
+        ((300.0, 395.0), ()),  # nothing better was built that the limit forbids
+        ((300.0, 350.0, 410.0), ()),  # far from the limit
+    ],
+)
+def test_a_constraint_binds_a_design_at_its_limit_beyond_which_a_better_one_is(
+    stresses: tuple[float, ...], held: tuple[str, ...]
+) -> None:
+    result = result_of((0.3, 20.0, 3e4 + s, s) for s in stresses)
+    assert binding(result, result.pareto[0]) == held
+
+
+GRID = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ values = [0.3, 0.4, 0.6, 0.9] }}
+"{LENGTH}" = {{ values = [20.0, 25.0, 30.0] }}
+[objective]
+"{K}" = "maximize"
+[run]
+method = "grid"
+"""
+
+
+def grid_of(stiffness: Mapping[tuple[float, float], float]) -> StudyResult:
+    """Every combination of wall and length; those without a stiffness were not built."""
+    places = [(w, x) for w in (0.3, 0.4, 0.6, 0.9) for x in (20.0, 25.0, 30.0)]
+    rows = (
+        Row(
+            i,
+            {WALL: at[0], LENGTH: at[1]},
+            Outcome({K: stiffness[at]}) if at in stiffness else Outcome(faults=("not built",)),
+        )
+        for i, at in enumerate(places)
+    )
+    return StudyResult(study_from(tomllib.loads(GRID), EXAMPLES, "test"), tuple(rows))
+
+
+def test_an_end_that_alone_could_be_built_is_not_open() -> None:
+    """Length 30 mm alone was built; next to the best wall of 0.4 mm, 0.6 mm was not, but 0.9 mm was."""
+    result = grid_of({(0.3, 30.0): 1e4, (0.4, 30.0): 3e4, (0.9, 30.0): 2e4})
+    (best,) = result.pareto
+    assert open_ends(result, best) == ()
+    assert unbuilt_neighbours(result, best) == ((WALL, 0.6), (LENGTH, 25.0))
+
+
+@pytest.mark.parametrize(
+    ("shorter", "found", "unbuilt"),
+    [(2e4, (OpenEnd(LENGTH, 30.0, "upper"),), ()), (None, (), ((LENGTH, 25.0),))],
+)
+def test_few_designs_of_a_grid_show_an_end_by_their_neighbour(
+    shorter: float | None, found: tuple[OpenEnd, ...], unbuilt: tuple[tuple[str, float], ...]
+) -> None:
+    """A softer neighbour inward shows a gain towards the end; one that is not there shows nothing."""
+    inward = {} if shorter is None else {(0.4, 25.0): shorter}
+    result = grid_of(
+        {(0.3, 30.0): 1e4, (0.4, 30.0): 3e4, (0.6, 30.0): 2e4, (0.3, 25.0): 2e4} | inward
+    )
+    (best,) = result.pareto
+    assert open_ends(result, best) == found
+    assert unbuilt_neighbours(result, best) == unbuilt
+
+
+def test_a_neighbour_that_would_be_worse_is_not_missed() -> None:
+    """A thicker wall could not be built, but a thinner one is better and breaks the constraint."""
+    result = grid_of({(0.3, 30.0): 4e4, (0.4, 30.0): 3e4})
+    tables = tomllib.loads(GRID) | {"constraint": {K: {"max": 3.5e4}}}
+    result = replace(result, study=study_from(tables, EXAMPLES, "test"))
+    (best,) = result.pareto
+    assert best.values[WALL] == 0.4
+    assert unbuilt_neighbours(result, best) == ((LENGTH, 25.0),)
 
 
 def test_what_only_goes_along_is_no_influence() -> None:

@@ -1,6 +1,7 @@
 """The PDF: its numbers, its length, and that names are data."""
 
 import re
+from dataclasses import replace
 
 import pytest
 from blank_pictures import blank_pictures
@@ -9,16 +10,23 @@ from PIL import Image
 from pypdf import PdfReader
 
 from flexspline.results.numbers import THIN
+from flexspline.results.report.budget import budget
 from flexspline.results.report.document import (
     Break,
     Document,
+    Formula,
     Heading,
     Paragraph,
     Picture,
     Pictures,
+    Table,
 )
 from flexspline.results.report.pdf import pdf_of
+from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import plain, symbol, worded
+from flexspline.results.report.spans import words as spans_of
+from flexspline.results.report.tables import answers
+from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.write import ReportError, write_report
 
 NASTY = [
@@ -108,6 +116,48 @@ def test_series_bounds_use_the_k_b_of_the_sum():
     low, high = content().K_series_bounds_Nm_per_rad
     assert low == pytest.approx(1 / (1 / 31607.0 + 1 / 35263.0))
     assert high == pytest.approx(1 / (1 / 31703.0 + 1 / 35317.0))
+
+
+@pytest.mark.parametrize(("case", "K_b"), [("uniform", "K_b"), ("lobes", "K_b,lobes")])
+def test_the_sum_names_the_k_b_of_its_load_case(case, K_b):
+    """In the totals, beside the series stiffness, in the formula as drawn and spoken, in the terms."""
+    solver = design().solver.model_copy(update={"load_case": case})
+    shown = content(design=design().model_copy(update={"solver": solver}))
+    formula, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Formula))
+    terms, *_ = (b for b in budget(shown, roomy=True) if isinstance(b, Table))
+    _, series, *_ = answers(shown)
+    for said in (totals_and_terms(shown), series["note"], formula.nodes, terms.rows):
+        assert set(re.findall(r"K_b[,a-z]*", str(said))) == {K_b}
+    assert f"2 T_L / {K_b} + " in formula.spoken
+
+
+@pytest.mark.parametrize(
+    ("models", "flexspline"),
+    [
+        (("solid", "solid"), None),
+        (("axisymmetric", "axisymmetric"), "K_b, K_b,lobes come from a mesh of the meridian; this one is for "
+                                           "the pictures of stress."),
+        (("axisymmetric", "solid"), "K_b comes from a mesh of the meridian; this one is for the pictures of "
+                                    "stress and the other stiffnesses."),
+    ],
+)  # fmt: skip
+def test_a_mesh_that_gave_no_stiffness_says_what_it_is_for(tmp_path, models, flexspline):
+    """Bodies of revolution are solved on the meridian; the figure has tetrahedra."""
+    K_b, K_lobes = (replace(K_B, model=model) for model in models)
+    shown = content(
+        stiffnesses={"K_b": K_b, "K_b_lobes": K_lobes, "K_e": K_E},
+        pictures=blank_pictures(tmp_path, 1600, 1200, ""),
+    )
+    captions = {
+        p.name: "".join(span.text for span in spans_of(p.caption))
+        for block in run_document(shown).blocks if isinstance(block, Pictures)
+        for p in block.figures
+    }  # fmt: skip
+    plain_mesh = "Mesh of the flexspline and its named surfaces."
+    assert captions["flexspline_mesh"] == " ".join(filter(None, (plain_mesh, flexspline)))
+    assert captions["shaft_mesh"].startswith(
+        "Mesh of the output shaft and its named surfaces. K_e comes"
+    )
 
 
 def test_failure_leaves_the_old_report(tmp_path):

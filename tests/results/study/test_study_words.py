@@ -12,6 +12,7 @@ from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.verified import Check, Verified
+from flexspline.results.report.document import Pictures, Table
 from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import entry, valued
@@ -43,6 +44,7 @@ design = "xb1-40.toml"
 [run]
 method = "sobol"
 """
+NO_OBJECTIVE = STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")
 
 
 def result_of(text: str = STUDY) -> StudyResult:
@@ -127,8 +129,24 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
     assert "upper end of its span in wall thickness" in said
 
 
+def test_a_neighbour_in_the_grid_that_could_not_be_built_is_said() -> None:
+    """The stiffest wall allowed, 0.4 mm, is no constraint's: the next, 0.6 mm, gave no design."""
+    text = STUDY.replace("min = 0.3, max = 0.5", "values = [0.3, 0.4, 0.6]").replace(
+        "sobol", "grid"
+    )
+    result = result_of(text.replace("300.0", "340.0"))
+    first, second = (
+        Row(i, {WALL: w}, r.outcome)
+        for i, (w, r) in enumerate(zip((0.3, 0.4), result.rows, strict=False))
+    )
+    third = Row(2, {WALL: 0.6}, Outcome(faults=("too thick",)))
+    assert limits(replace(result, rows=(first, second, third))) == [
+        "Beside design 1, the next wall thickness of the grid, 0.6\u202fmm, could not be built or solved."
+    ]
+
+
 def test_without_an_objective_the_usual_figures_are_followed() -> None:
-    said = influences(result_of(STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")))
+    said = influences(result_of(NO_OBJECTIVE))
     assert [s.split(",")[0] for s in said] == [
         "Flexspline stiffness", "Peak von Mises stress", "Backlash",
     ]  # fmt: skip
@@ -222,6 +240,53 @@ def test_a_peak_at_the_excluded_border_is_marked_in_study_table_and_notes() -> N
     assert "in 4 of 10 designs" in line
     assert not any("at excluded border" in n for n in notes(result))  # of a study begun before
     assert "†" in str(payload_of(study_document(said, ())))
+
+
+def flagged(result: StudyResult) -> StudyResult:
+    """Every peak at the excluded border."""
+    rows = tuple(
+        replace(r, outcome=replace(r.outcome, figures={**r.outcome.figures, FLAG: 1.0}))
+        for r in result.rows
+    )
+    return replace(result, rows=rows)
+
+
+@pytest.mark.parametrize(
+    ("text", "marks"),
+    [
+        (STUDY.replace("300.0", "450.0"), True),
+        (STUDY.replace(f'"{STRESS}" = {{ max = 300.0 }}\n', ""), False),  # the stress is no line
+        (STUDY, False),  # nothing is allowed: no table
+        (NO_OBJECTIVE, False),  # ten designs without a best: no table
+    ],
+)
+def test_a_dagger_is_explained_where_one_stands_in_a_table(text: str, marks: bool) -> None:
+    result = flagged(result_of(text))
+    (line,) = [n for n in notes(result) if "at excluded border" in n]
+    assert ("†" in line) is marks
+    tables = [b for b in study_document(result, ()).blocks if isinstance(b, Table)]
+    assert ("†" in str(tables)) is marks
+
+
+def test_few_designs_without_an_objective_have_their_figures_in_the_report() -> None:
+    """One of ten could be built, and breaks a constraint of the study."""
+    result = result_of(NO_OBJECTIVE)
+    failed = Outcome(faults=("too thick",))
+    rows = (result.rows[0], *(replace(r, outcome=failed) for r in result.rows[1:]))
+    document = study_document(flagged(replace(result, rows=rows)), ())
+    table = next(b for b in document.blocks if isinstance(b, Table))
+    assert [c.head for c in table.columns] == ["", "design 0 (not allowed)"]
+    assert [row[1] for row in table.rows] == ["0.3", "30\u202f000", "310 †", "85.0"]
+    assert "The designs built" in str(payload_of(document))
+
+
+@pytest.mark.parametrize(("most", "allowed"), [("300.0", False), ("450.0", True)])
+def test_there_is_no_best_so_far_where_nothing_is_allowed(most: str, allowed: bool) -> None:
+    document = study_document(result_of(STUDY.replace("300.0", most)), ["convergence.png"])
+    (shown,) = (b for b in document.blocks if isinstance(b, Pictures))
+    caption = str(shown.figures[0].caption)
+    assert ("best so far" in caption) is allowed
+    assert ("none keeps to every constraint" in caption) is not allowed
 
 
 def test_with_drawn_teeth_the_ring_of_the_sensitivities_is_said_not_to_be_the_files() -> None:
