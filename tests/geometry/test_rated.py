@@ -17,7 +17,7 @@ MODULUS = "material.flexspline.youngs_modulus_GPa"
     [(190.0, 1.0), (114.0, 114 / 206), (1.6, 1.6 / 206)],
 )
 def test_a_softer_gear_carries_as_much_less(modulus_GPa: float, share: float) -> None:
-    """T ~ E at the same shape under load (all equations of elasticity are linear in E); of any steel alike."""
+    """T ~ E at the same shape under load (elasticity is linear in E); of any steel alike."""
     usual, _ = rated_torque(CUP)
     found, (assumed,) = rated_torque(CUP.changed({MODULUS: modulus_GPa}))
     assert found == pytest.approx(share * usual)
