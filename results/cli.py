@@ -72,7 +72,7 @@ def run(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """Full analysis: stiffness, stress, backlash, whole gear; writes report.pdf and report.html."""
+    """Everything: stiffness, stress, backlash, whole gear, report."""
     with answered(design, RESUMES):
         from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
@@ -154,7 +154,7 @@ def backlash(
 
 @app.command()
 def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """Torque-angle curve of the whole gear: K1, K2, K3, lost motion."""
+    """Torque and angle of the whole gear: K1 to K3, lost motion."""
     with answered(design, RESUMES):
         job = begin(design, out, GEAR)
         from flexspline.pipeline.analysis import stiffnesses

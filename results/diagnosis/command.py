@@ -86,7 +86,7 @@ def diagnose(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """Compare measured data with the simulation and name the causes."""
+    """Why measured data differ from the simulation: the causes."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
     with answered(design, "; run the same command again: it starts from the beginning"):
         from flexspline.pipeline.second_process import second_process

@@ -100,7 +100,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """Derivatives of K_b and K_e by dimension, of backlash by clearance."""
+    """Derivatives of K_b, K_e and backlash by every dimension."""
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities

@@ -66,3 +66,14 @@ def test_no_words_at_all_are_answered_with_the_help(capfd: pytest.CaptureFixture
     with pytest.raises(SystemExit):
         app([])
     assert "Commands:" in "".join(capfd.readouterr())
+
+
+def test_what_a_command_does_is_said_in_a_line_of_a_narrow_terminal(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit):
+        app(["--help"])
+    commands = capfd.readouterr().out.partition("Commands:")[2]
+    assert "study" in commands
+    assert "..." not in commands
