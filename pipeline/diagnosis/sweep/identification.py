@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.sweep.owner_rms import (
     rms_beyond_calibration,
     rms_together,
 )
-from flexspline.pipeline.diagnosis.sweep.plausible_sets import fits_noise, plausible
+from flexspline.pipeline.diagnosis.sweep.plausible_sets import CURVES, fits_noise, plausible
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.rivals import rivals_of
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
@@ -32,7 +32,7 @@ STAND_IN_NATS = 3.0
 the nuisance term, which costs 4.5 more, is not the one."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
-has but one shape. What zero, compliance and gap can be is no part of that rms: a hardening is mostly a
+has but one shape. Of a hardening what zero, compliance and gap can be is no part of that rms: it is mostly a
 straight spring, which misses nothing."""
 MORE_WITHOUT = 2
 """Terms that a set without a cause may have more than the best set: another law takes two or three elements
@@ -84,8 +84,7 @@ def identify(search: Search, beside: bool = False) -> Identification:
     ahead = {FRICTION} if evidence.columns.ahead else set()
     rms = owner_rms(fit, sorted(best.owners | ahead))
     held = best.named(evidence) | ahead
-    shaped = [c for c in held if not known_causes()[c].exact]
-    largest = max((rms_beyond_calibration(fit, c) for c in shaped), default=0.0)
+    largest = max((_shaped_rms(fit, c, rms[c]) for c in held), default=0.0)
     doubt = SizeDoubt.of(fit)
 
     def is_sure(cause: str) -> bool:  # of one shape: that it is there is sure where its size is not
@@ -110,6 +109,13 @@ def identify(search: Search, beside: bool = False) -> Identification:
         if found is not None:
             rival_sets[cause] = found
     return Identification(search, best, fit, doubt, tuple(named), rms, rivals, rival_sets, nats)
+
+
+def _shaped_rms(fit: SweepFit, cause: str, rms: float) -> float:
+    """Rms [arcsec] of what a cause's shape may miss a part of."""
+    if known_causes()[cause].exact:
+        return 0.0
+    return rms_beyond_calibration(fit, cause) if cause in CURVES else rms
 
 
 def _worth(
