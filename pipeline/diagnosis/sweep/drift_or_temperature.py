@@ -18,11 +18,11 @@ from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, with_terms
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.rivals import penalised
 from flexspline.pipeline.diagnosis.sweep.search import Search
 
 ZERO = UnnamedForm("changing_zero")
-"""Of the channel temperature, the only one that has it."""
 LATEST, LATE_LAGS = (0.01, 1.0), 25
 """Of the record, by which the gear warms later than the sensor; and how many lags are tried, a fifth apart:
 between two of them a zero that follows a rise is off by less than 1 %."""
@@ -37,7 +37,7 @@ def may_follow_temperature(identified: Identification) -> bool:
     again = Search(evidence)
     rest = tuple(i for i in best.terms if evidence.terms[i].owner != DRIFT)
     for i, term in enumerate(evidence.terms):
-        if term.form != ZERO or i in best.terms:
+        if not _follows(term) or i in best.terms:
             continue
         other = again.candidate((*rest, i))
         behind = mine - other.log_evidence_with_shapes(again)
@@ -46,10 +46,15 @@ def may_follow_temperature(identified: Identification) -> bool:
     return False
 
 
+def _follows(term: Regressor) -> bool:
+    """Whether a term is a zero that changes with temperature."""
+    return term.channel == "temperature_C" and term.form == ZERO
+
+
 def _with_late_zeros(evidence: GaussianEvidence) -> GaussianEvidence:
     """The race with zeros that follow the temperature late, where it has one that follows it at once."""
     rig = evidence.columns.rig
-    like = next((t for t in evidence.terms if t.form == ZERO and t.width == 1), None)
+    like = next((t for t in evidence.terms if _follows(t) and t.width == 1), None)
     if like is None or rig.duration_s <= 0:
         return evidence
     constants = np.geomspace(*LATEST, LATE_LAGS) * rig.duration_s

@@ -79,3 +79,18 @@ def test_a_temperature_that_swings_tells_them_apart(tmp_path: Path) -> None:
     assert cause_title(cause) == "drift of the angle reading"
     follows = diagnosed(swings, lambda share: PER_KELVIN * swings(share), tmp_path)
     assert follows.verdict == "unknown"
+
+
+def test_a_drift_beside_turns_of_the_wave_generator_has_no_temperature(tmp_path: Path) -> None:
+    """A zero that changes with those turns is a term of its own; the record has no temperature."""
+    found = diagnosed(rises, of_time, tmp_path)
+    lines = (tmp_path / "rig.csv").read_text().splitlines()[1:]
+    turned = tmp_path / "turned.csv"
+    rows = [line.split(",") for line in lines]
+    turned.write_text(
+        "time_s,input_angle_deg,torque_Nm,angle_arcsec\n"
+        + "".join(f"{t},{15 * (k // 30)},{q},{a}\n" for k, (t, _, q, a) in enumerate(rows))
+    )
+    (cause,) = diagnose_file(found.design, turned, 31329.0, 43339.0).causes
+    assert cause.id == "sensor_drift"
+    assert not cause.or_temperature
