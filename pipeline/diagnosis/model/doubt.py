@@ -35,8 +35,8 @@ class PredictionUncertainty:
 
     Attributes
     ----------
-    reading_arcsec : the larger of the rms error on rows that were not used for fitting and the noise of all
-        rows used; where no row could be spared, that noise. torque_noise_Nm : of the torque reading.
+    reading_arcsec : the largest of the rms error on rows that were not used for fitting, the noise of all
+        rows used, and the rounding to an encoder's steps. torque_noise_Nm : of the torque reading.
     covariance : (p, p) of the parameters in the order of `parameter_columns`; (0, 0): too many to be kept.
     span : what was measured; predictions beyond are extrapolated.
     """

@@ -23,7 +23,7 @@ from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan
 
 ABOUT = """\
 [doubt]   # one standard deviation of a reading from its prediction
-reading_arcsec = {reading}   # larger of the rms error on rows not used for fitting and the noise of all used
+reading_arcsec = {reading}   # largest of: rms error on rows not fitted, noise, an encoder's rounding
 torque_noise_Nm = {noise}
 # covariance of zeros, compliance, gap, each unit's own compliance and gap, and all amplitudes below, in the
 # order of this file; lower triangle

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.encoder_step import ROUNDING_RATIO, encoder_step
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, PredictionUncertainty
@@ -43,7 +45,8 @@ def written_model(
         fit = _refitted(evidence, kept) or fit
     model = model_of(fit, sweep, list(named), explained.offset_Nm)
     noise = explained.identified.fit.residual_as_read()[explained.prepared.kept]
-    floor = rms(noise)
+    # a motion in step with the encoder leaves less here than its rounding will leave of another
+    floor = max(rms(noise), encoder_step(sweep.angle_arcsec) / sqrt(ROUNDING_RATIO))
     of_row = max(floor, gain.rmse_after) if gain else floor
     if (averaging := explained.prepared.sweep.averaging) is not None:  # so far it is of means
         of_row = float(np.sqrt(of_row**2 + averaging.variance_within(model.compliance)))

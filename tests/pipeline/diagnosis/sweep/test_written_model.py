@@ -13,7 +13,7 @@ from hidden.cases import draw_case
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
-from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 
@@ -56,3 +56,25 @@ def test_no_worse_than_calibrated(kind: str, tmp_path: Path) -> None:
         float(np.sqrt(np.mean(x[evidence.kept] ** 2))) for x in (left, calibrated)
     )
     assert model_rms <= WORSE * calibrated_rms
+
+
+def test_a_prediction_is_no_better_than_the_encoder(tmp_path: Path) -> None:
+    """Torque moves by two steps a row: the rounding is nearly the same in each, and passes for the zero."""
+    step, rows = 4.9, 240
+    torque = 100 * (1 - 4 * np.abs(((np.arange(5 * rows) + 0.5) / rows + 0.25) % 1 - 0.5))
+    slope = 2 * step * rows / 400 * (1 + 1e-3)
+    angle = slope * torque + 36.0 * np.sign(torque)
+    angle += np.random.default_rng(2).normal(0, 0.3, len(torque))
+    path = tmp_path / "rig.csv"
+    path.write_text(
+        "time_s,torque_Nm,angle_arcsec\n"
+        + "".join(
+            f"{k},{t:.4f},{step * round(a / step):.1f}\n"
+            for k, (t, a) in enumerate(zip(torque, angle, strict=True))
+        )
+    )
+    sweep = read_measurement(path)
+    assert isinstance(sweep, Sweep)
+    _, behind = diagnose_sweep(sweep, Prediction(slope, 0.02 * slope, 72.0, 10.0))
+    assert behind is not None
+    assert behind.doubt.reading_arcsec >= step / np.sqrt(12)
