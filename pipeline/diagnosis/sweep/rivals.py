@@ -34,9 +34,9 @@ def rivals_of(
         return tuple(i for i in best.terms if evidence.terms[i].owner not in owners)
 
     present = {evidence.terms[i].owner for i in best.terms}
+    if evidence.columns.ahead:  # behind the gap too it may stand beside a rival
+        present |= {FRICTION}
     others = {t.cause.id for t in evidence.terms if t.cause} - present
-    if evidence.columns.ahead:
-        others -= {FRICTION}
     mine = penalised(evidence, best.terms)
     found: list[tuple[float, str, Candidate]] = []
     for other in sorted(others):
