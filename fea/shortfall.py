@@ -44,7 +44,7 @@ def settled_peak(found: StressPeak) -> StressPeak:
     return found
 
 
-def without(fault: FlexsplineError | MemoryError) -> Shortfall:
+def missing_because(fault: FlexsplineError | MemoryError) -> Shortfall:
     """Of a figure that is missing for this fault."""
     return Shortfall(_words(fault), _is_of_the_machine(fault))
 

@@ -117,5 +117,5 @@ def _solver_faults(design: Design) -> Iterator[DesignError]:
         yield DesignError(
             "solver.model",
             design.solver.model,
-            f'must be "solid" or "auto": {what}, and the part is no body of revolution',
+            f'must be "solid" or "auto": {what}, and the part is not a body of revolution',
         )

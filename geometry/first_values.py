@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial
+from flexspline.geometry.material import BEARING_STEEL, STEEL_KG_PER_M3, ElasticMaterial
 
 TomlTable = dict[str, Any]
 
@@ -15,7 +15,7 @@ _STEEL = {
     "youngs_modulus_GPa": 206.0,
     "poissons_ratio": 0.3,
     "fatigue_limit_MPa": 500.0,
-    "density_kg_per_m3": 7850.0,
+    "density_kg_per_m3": STEEL_KG_PER_M3,
 }
 _CUP: TomlTable = {
     "kind": "cup",

@@ -20,10 +20,10 @@ RATED_WHY = (
     f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes at "
     "ratio 100"
 )
-STEEL_GPa, SOFTEST_STEEL_GPa = 206.0, 150.0
-"""Young's modulus of those gears, and what no steel's is below: a gear of titanium, aluminium or plastic is
-assumed to carry as much less as it is softer, which bends it to the same shape. With a catalogue's torque a
-plastic gear would turn by six teeth."""
+SOFTEST_STEEL_GPa = 190.0
+"""Of those gears' steels, at least. A flexspline of titanium, aluminium or plastic is assumed to carry as
+much less as it is softer than that, which bends it to the same shape: with a catalogue's torque a plastic
+gear would turn by six teeth."""
 STRONGEST_Nm_per_mm3 = 3.2e-3
 """The largest of these four, size 20."""
 UNUSUAL = 3.0
@@ -42,15 +42,20 @@ def rated_in_proportion(pitch_radius_mm: float) -> float:
     return RATED_Nm_per_mm3 * pitch_radius_mm**3
 
 
+def _share_of_steel(design: Design) -> float:
+    """Torque of the flexspline's material over that of steel, at the same shape under load."""
+    return min(1.0, design.material.flexspline.youngs_modulus_GPa / SOFTEST_STEEL_GPa)
+
+
 def rated_warnings(design: Design) -> Iterator[str]:
     """A rated torque that no catalogue gear of that pitch diameter has."""
     stated, radius = design.gear.rated_torque_Nm, design.gear.pitch_radius_mm
-    most = STRONGEST_Nm_per_mm3 * radius**3
+    most = _share_of_steel(design) * STRONGEST_Nm_per_mm3 * radius**3
     if stated is not None and stated > UNUSUAL * most:
         yield (
             f"gear.rated_torque_Nm = {stated:g} is {stated / most:.3g} times what the strongest catalogue "
-            f"gear of {2 * radius:.3g} mm pitch diameter carries, some {most:.3g} N·m (Schaeffler TPI 275, "
-            "ratio 100)"
+            f"gear of {2 * radius:.3g} mm pitch diameter and this material would carry, some {most:.3g} N·m "
+            "(Schaeffler TPI 275, ratio 100)"
         )
 
 
@@ -60,10 +65,10 @@ def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
     if stated is not None:
         return stated, ()
     value, why = rated_in_proportion(design.gear.pitch_radius_mm), RATED_WHY
-    modulus_GPa = design.material.flexspline.youngs_modulus_GPa
-    if modulus_GPa < SOFTEST_STEEL_GPa:
-        value *= modulus_GPa / STEEL_GPa
-        why += f", which are of steel; times {modulus_GPa:g} over {STEEL_GPa:g} GPa"
+    softness = _share_of_steel(design)
+    if softness < 1:
+        value *= softness
+        why += f", which are of steel; times {softness:.3g}, E over {SOFTEST_STEEL_GPa:g} GPa"
     return value, (Assumed("gear.rated_torque_Nm", value, why),)
 
 

@@ -17,13 +17,12 @@ a mesh of fair shape wants one no thinner than this."""
 class Sector:
     """A piece from angle 0 to `degrees`; `label` says which part of the whole it is.
 
-    `antisymmetric`: on the bounding planes the in-plane displacements vanish (torsion, lobes);
-    otherwise the normal displacement does (ellipse).
+    On the bounding planes the in-plane displacements vanish (torsion, lobes), or the normal displacement does
+    (ellipse).
     """
 
     degrees: float
     label: str
-    antisymmetric: bool
 
     @property
     def copies(self) -> float:
@@ -39,13 +38,12 @@ def sector_of(part: Part, case: SymmetryCase) -> Sector:
     The two lobes leave a quarter if N is even (holes mirrored about 90°), else half.
     """
     holes = part.bolts.count if part.bolts else 0
-    antisymmetric = case != "ellipse"
     if case == "torsion":
         if part.keyway is not None:
-            return Sector(180.0, "1/2", antisymmetric)
+            return Sector(180.0, "1/2")
         if holes == 0:
-            return Sector(ARBITRARY_DEG, "1/12", antisymmetric)
-        return Sector(180.0 / holes, f"1/{2 * holes}", antisymmetric)
+            return Sector(ARBITRARY_DEG, "1/12")
+        return Sector(180.0 / holes, f"1/{2 * holes}")
     if holes % 2 == 0:
-        return Sector(90.0, "1/4", antisymmetric)
-    return Sector(180.0, "1/2", antisymmetric)
+        return Sector(90.0, "1/4")
+    return Sector(180.0, "1/2")

@@ -35,7 +35,7 @@ from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.two_threads import beside
-from flexspline.pipeline.unfilleted_shaft import FILLETS, without_fillets
+from flexspline.pipeline.unfilleted_shaft import FILLETS, marked_unfilleted
 from flexspline.pipeline.wave_generator import sharp_edges
 
 
@@ -228,7 +228,7 @@ def torque_field(model: PartModel) -> SolidField:
         if not model.axisymmetric:
             shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
             solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
-            return without_fillets(solved) if twisted.without_fillets else solved
+            return marked_unfilleted(solved) if twisted.without_fillets else solved
         exact = torsion_stress(
             model.part.meridian,
             model.material,

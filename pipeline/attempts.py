@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeVar
 
-from flexspline.fea.shortfall import without
+from flexspline.fea.shortfall import missing_because
 from flexspline.fea.types import Shortfall
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.enclosure import NestingError
@@ -29,5 +29,5 @@ class Attempts:
         except NestingError:
             raise
         except (ComputationError, MemoryError) as fault:
-            self.missing[name] = without(fault)
+            self.missing[name] = missing_because(fault)
         return None

@@ -15,7 +15,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.shortfall import without
+from flexspline.fea.shortfall import missing_because
 from flexspline.fea.types import SolidField, StressPeak
 from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.errors import ComputationError
@@ -70,7 +70,7 @@ def ellipse_peak(flexspline: PartModel) -> StressPeak:
     except (ComputationError, MemoryError) as fault:
         if agreed is None:
             raise
-        why = without(fault)
+        why = missing_because(fault)
         words = f"the stress at the bolt holes is not known: {why.words}"
         return replace(agreed, shortfall=replace(why, words=words))
 

@@ -46,7 +46,7 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
-"""Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in those four sizes."""
+"""Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in sizes 14 to 25."""
 BELOW_T1 = (0.001, 0.005, 0.015, LOST_MOTION_SHARE, 0.065, 0.09)
 """Of rated torque: teeth come into contact there, the curve bends, and the lost motion is read."""
 LOADING = (*BELOW_T1, T1_SHARE, 0.25, 0.37, T2_SHARE, 0.66, 0.83, 1.0)
@@ -81,7 +81,8 @@ class GearCurve:
     buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube, or
         it yields first.
     ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces
-        (`fea.gear.engagement`); None where nobody asked, or where they hold beyond a thousand rated torques.
+        (`fea.gear.engagement`); None where nobody asked, or where they hold at 16 000 times
+        the rated torque of a gear of this size.
     """
 
     K1_Nm_per_rad: float

@@ -70,7 +70,7 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
 
 
 def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[GearWarning]:
-    """What makes the gear another one than was meant."""
+    """What makes it a gear that was not intended."""
     found: list[GearWarning] = []
     if preload_N := both_press_N(model, unloaded):
         found.append(_pressing(preload_N, design, model, unloaded))

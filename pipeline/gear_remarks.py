@@ -72,7 +72,7 @@ class EarlyEnd:
 GearWarning = (
     PressingFlanks | CuttingFlanks | LoadBeyondRated | EarlyEnd | Literal["play_closes_gap"]
 )
-"""What makes the gear another one than was meant; that more play makes the free angle smaller."""
+"""What makes it a gear that was not intended; that more play makes the free angle smaller."""
 
 
 @dataclass(frozen=True)

@@ -172,7 +172,7 @@ class PartModel:
             raise DesignError(
                 "solver.model",
                 wanted,
-                f"the {self.name} has bolt holes or a keyway and is no body of revolution;"
+                f"the {self.name} has bolt holes or a keyway and is not a body of revolution;"
                 ' "solid" or "auto" works',
             )
         return self.part.is_revolved and wanted != "solid"

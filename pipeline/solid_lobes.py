@@ -124,7 +124,7 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
     first, worth = number == 0 and not begun, expected <= WORTH_SHARE * known
     for tried in (number, COARSER_MESH) if first and worth else (number,):
         try:
-            return _finer(flexspline, tried)
+            return _numbered_mesh(flexspline, tried)
         except TooManyElementsError as fault:
             elements = fault.elements
     if first and not worth:
@@ -132,7 +132,7 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
     raise SolidError(f"it would have {elements:.0f} elements, at most {MOST_LOBE_ELEMENTS}")
 
 
-def _finer(flexspline: PartModel, number: int) -> TetMesh:
+def _numbered_mesh(flexspline: PartModel, number: int) -> TetMesh:
     f, material = flexspline.context.design.flexspline, flexspline.material
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, material, flexspline.tolerance, number)
     meshes, spec = PartMeshes(flexspline), flexspline.first_spec

@@ -64,7 +64,7 @@ def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
     return twisted(model, tolerance, ("tetwild",))
 
 
-def without_fillets(field: SolidField) -> SolidField:
+def marked_unfilleted(field: SolidField) -> SolidField:
     """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
     peak = field.peak
     excluded = f"{peak.excluded}, and {FILLETS}, which the mesh leaves out"

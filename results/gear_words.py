@@ -36,7 +36,7 @@ ENDS = {"ratchets": "the gear ratchets", "buckles": "the flexspline's tube buckl
 
 
 def gear_warnings(curve: GearCurve) -> list[str]:
-    """What makes the gear another one than was meant."""
+    """What makes it a gear that was not intended."""
     return [_warning(each) for each in curve.warnings]
 
 

@@ -17,9 +17,9 @@ from flexspline.geometry.shapes import Flexspline
 
 LOWER_EDGE_OF_TESTS = 0.67
 """Measured over theory: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
-MOST_ELASTIC_STRAIN = 0.01
-"""Shear stress over E where the tube buckles, at most: the hardest maraging steels yield in shear at 0.006 E,
-plastics of gears at 0.012 E. A tube of 1.2 mm length and 0.4 mm wall would buckle at E/2."""
+YIELD_SHEAR_OVER_E = 0.01
+"""Shear stress at yield over Young's modulus, at most: steels up to 0.006, plastics of gears near this. A
+tube of 1.2 mm length and 0.4 mm wall would buckle at 0.5."""
 EndFixity = Literal["hinged", "clamped"]
 TERMS: dict[EndFixity, tuple[float, float, float]] = {
     "hinged": (1.27, 9.64, 0.466),
@@ -61,8 +61,8 @@ class Tube:
 
     @property
     def yields_first(self) -> bool:
-        """Whether no material is elastic up to there: so it is with a short or a thick tube."""
-        limit_MPa = MOST_ELASTIC_STRAIN * self.material.youngs_modulus_MPa
+        """Whether hardly any material is elastic up to there: so it is with a short or a thick tube."""
+        limit_MPa = YIELD_SHEAR_OVER_E * self.material.youngs_modulus_MPa
         return self.stress_MPa(self.lower_edge_Nm) > limit_MPa
 
     def stress_MPa(self, torque_Nm: float) -> float:

@@ -92,7 +92,7 @@ def _check_design_key(study: Study, table: str, key: str) -> None:
     known = _numeric_keys(study.design)
     near = nearest_key(key, known)
     reason = f"did you mean {near}?" if near and near != key else f"e.g. {known[0]}"
-    raise StudyError(f'{table}."{key}"', {}, f"is no number of the design file; {reason}")
+    raise StudyError(f'{table}."{key}"', {}, f"is not a number in the design file; {reason}")
 
 
 def _check_spread(study: Study, key: str, spread: Spread) -> None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from flexspline.fea.shortfall import without
+from flexspline.fea.shortfall import missing_because
 from flexspline.fea.types import NMM_PER_NM, Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
@@ -127,7 +127,7 @@ def holes_of(
         fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
     except (ComputationError, MemoryError) as fault:
-        why = without(fault)
+        why = missing_because(fault)
         say(f"K_e stays that of the shaft without holes: {why}")
         return UnknownEffect(why.words, why.of_the_machine)
     value = min(1.0, solid.K_Nm_per_rad / fast.K_Nm_per_rad)  # less material is never stiffer

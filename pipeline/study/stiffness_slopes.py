@@ -13,7 +13,7 @@ from functools import cache
 
 from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
 from flexspline.fea.axisymmetric.twist import Twist, twist
-from flexspline.fea.shortfall import settled, without
+from flexspline.fea.shortfall import missing_because, settled
 from flexspline.fea.types import MET, Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError, FlexsplineError
@@ -80,7 +80,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             try:
                 held = slope_with_field_held(moved, key, p)
             except FlexsplineError as fault:
-                why = without(fault)
+                why = missing_because(fault)
             again, error, no_room = _richardson(K, key, p, here)
             if held is None and again is None:
                 missing[key] = why
@@ -92,7 +92,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
                     of_sum = K_lobes({})
                     best, _, no_sum = _richardson(K_lobes, key, p, of_sum)
                 except FlexsplineError as fault:
-                    best, no_sum = None, without(fault)
+                    best, no_sum = None, missing_because(fault)
             windup = None
             if best is not None:
                 windup = -2 * design.load.torque_Nm / of_sum**2 * best * ARCSEC_PER_RAD
@@ -137,7 +137,7 @@ def _richardson(
         try:
             wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
         except FlexsplineError as fault:
-            share, why = share * NARROWER, without(fault)
+            share, why = share * NARROWER, missing_because(fault)
             continue
         noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
         return (4 * close - wide) / 3, noise + abs(close - wide) / 3, MET

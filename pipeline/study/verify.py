@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
 
-from flexspline.fea.shortfall import without
+from flexspline.fea.shortfall import missing_because
 from flexspline.geometry.design import Design, Solver
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.keys import with_values
@@ -63,7 +63,7 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
     except NestingError:  # an error of the program
         raise
     except (FlexsplineError, MemoryError) as fault:
-        why = without(fault)
+        why = missing_because(fault)
         return SolidAnswer(Outcome(faults=(why.words,)), why.of_the_machine)
 
 

@@ -47,7 +47,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     """How the file was read, and notes of the kind that was measured."""
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
-        "compared with the simulated curve of the whole gear, which leaves its chord by up to "
+        "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
         f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction),
     )  # fmt: skip
     found = diagnosis.gear_inputs
@@ -89,7 +89,7 @@ def _held_rows(count: int) -> list[str]:
         return []
     return [
         f"the angle is read more slowly than rows are written: {count} rows that repeat the angle before "
-        "are left out, as the torque has gone on since"
+        "are left out: the torque has changed since that reading"
     ]
 
 

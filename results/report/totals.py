@@ -41,11 +41,11 @@ def totals_and_terms(content: ReportContent) -> Words:
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")
         + plain(
-            ") has teeth, rim contact and bearing in series, but no clearance: compare it with a catalogue. "
+            ") has teeth, rim contact and bearing in series and no clearance, as a catalogue's has. "
         )
         + _whole_twist(curve)
         + plain(
-            "Lost motion has the clearances"
+            "Lost motion includes the clearances"
             + (", of which none is left free" if curve.free_angle_arcsec == 0 else "")
             + ". Bolts, housing and friction are in none of these."
         )

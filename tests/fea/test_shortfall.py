@@ -9,7 +9,7 @@ import pytest
 from example_cup import CUP
 
 from flexspline.fea.axisymmetric import lobes, peak_refinement, stress, torsion
-from flexspline.fea.shortfall import ToleranceError, next_mesh_failed, settled, without
+from flexspline.fea.shortfall import ToleranceError, missing_because, next_mesh_failed, settled
 from flexspline.fea.solid import stiffness as solid
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import MemoryShortError, MesherError, MesherTimeError
@@ -178,4 +178,4 @@ def test_a_better_machine_may_mend_some_faults(fault: Exception, expected: bool)
 @pytest.mark.parametrize("mended", [True, False])
 def test_what_misses_a_figure_out_of_tolerance_knows_why_that_was(mended: bool) -> None:
     fault = ToleranceError("K is known to ± 1 % only", Shortfall("no time", mended))
-    assert without(fault) == Shortfall("K is known to ± 1 % only: no time", mended)
+    assert missing_because(fault) == Shortfall("K is known to ± 1 % only: no time", mended)

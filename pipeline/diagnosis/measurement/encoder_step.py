@@ -16,7 +16,7 @@ change its readings by hand or by an outlier."""
 
 
 def undithered(variance: float, step: float) -> float:
-    """Variance [arcsec²] of an encoder's rounding that follows the angle, among readings of this variance.
+    """Variance of a rounding that follows what is read, among readings of this variance; in step's unit².
 
     All of step²/12 without noise. With normal noise of deviation σ the saw-tooth's harmonics, the first
     foremost, are smaller by exp(−2π²σ²/step²), and the rest of the rounding is noise as well.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.operators import stops
@@ -97,7 +98,7 @@ def _ways(history: History, limit_Nm: float) -> np.ndarray:
     for rows in history.unit_slices:
         torque, time = history.torque_Nm[rows], history.time_s[rows]
         beyond = np.sign(torque) * np.maximum(np.abs(torque) - limit_Nm, 0.0)
-        way[rows[1:]] = np.cumsum((beyond[1:] + beyond[:-1]) / 2 * np.diff(time))
+        way[rows] = cumulative_trapezoid(beyond, time, initial=0.0)
     return way
 
 

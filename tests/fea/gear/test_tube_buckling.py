@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 
-from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, Tube
+from flexspline.fea.gear.tube_buckling import Tube
 from flexspline.fea.types import Elastic
 from flexspline.geometry.load import load_design
 
@@ -59,7 +59,8 @@ def test_ends_that_hold_more_make_it_stronger_and_tests_lie_below() -> None:
     for length in (20.0, 60.0, 300.0):
         tube = replace(LONG, length=length)
         assert tube.torque_Nm("clamped") > tube.torque_Nm("hinged")
-        assert tube.lower_edge_Nm == pytest.approx(LOWER_EDGE_OF_TESTS * tube.torque_Nm("hinged"))
+        # γ^(3/4) of NASA SP-8007, cylinders in torsion
+        assert tube.lower_edge_Nm == pytest.approx(0.67 * tube.torque_Nm("hinged"))
     assert LONG.stress_MPa(1000.0) == pytest.approx(1e6 / (2 * pi * 100**2 * 0.5))
 
 

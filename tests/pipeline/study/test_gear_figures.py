@@ -67,7 +67,7 @@ def test_what_the_design_file_leaves_to_its_default_can_be_varied_but_cannot_sca
     )
     with pytest.raises(StudyError, match="has no value in the design file"):
         study_of(scattered)
-    with pytest.raises(StudyError, match="is no number of the design file"):
+    with pytest.raises(StudyError, match="is not a number in the design file"):
         study_of(GRID.replace("flexspline.wall_thickness_mm", "shaft.keyway.depth_mm"))
 
 
