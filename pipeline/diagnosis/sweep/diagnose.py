@@ -20,7 +20,7 @@
 | test it for what comes back in every cycle | `repeated_misfit.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
 | what the causes explain by themselves, and the rest after them | `credit.py` |
-| verdict; physical limits | `../decision.py`; `limits.py` |
+| verdict; physical limits | `left_over.py`, `../decision.py`; `limits.py` |
 | a torque that comes late | `backward.py` (`loads.py`, `torque_delay.py`) |
 | an angle that comes late | `late_angle.py` (`crossing_forms.py`, `crossing_fit.py`) |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
@@ -30,9 +30,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
 
-from flexspline.pipeline.diagnosis.decision import Decision, decided, overruled
+from flexspline.pipeline.diagnosis.decision import Decision, overruled
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
@@ -48,27 +47,17 @@ from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
 from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
-from flexspline.pipeline.diagnosis.sweep.credit import unnamed_share
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
-from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
+from flexspline.pipeline.diagnosis.sweep.left_over import judged, left_over
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned, slow_noise
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
-from flexspline.pipeline.diagnosis.sweep.repeated_misfit import repeated_misfit
-from flexspline.pipeline.diagnosis.sweep.residual_tests import (
-    UNKNOWN_P_VALUE,
-    ChannelTest,
-    channel_tests,
-)
-from flexspline.pipeline.diagnosis.sweep.rounding import of_torque_step_arcsec, saw_tooth_arcsec
-from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
+from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
-from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
-from flexspline.pipeline.diagnosis.sweep.unexplained import made_by_rounding, unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 
@@ -98,42 +87,11 @@ def diagnose_sweep(
     except TooFewRowsError as error:
         return _insufficient(FewRows(error.count, error.wanted)), None
     explained = with_friction_ahead(prepared) or with_torque_offset(run_race(prepared))
-    identified = explained.identified
     if (hidden := drowned(explained)) is not None:
         return _insufficient(hidden), None
     causes = named_causes(explained)
-    rounding = saw_tooth_arcsec(explained.prepared, identified.fit)
-    tests = [
-        test
-        for test in channel_tests(explained.prepared, identified.fit)
-        if test.rms_arcsec > rounding
-    ]
-    jumps = largest(
-        *(
-            test(explained.prepared, identified.fit)
-            for test in (jumps_of, stuck_of, scatter_along_travel)
-        )
-    )
-    # the encoder's step is known to each of these tests
-    if jumps is not None and jumps.rms_arcsec < of_torque_step_arcsec(
-        explained.prepared, identified.fit
-    ):
-        jumps = None
-    again = repeated_misfit(explained.prepared, identified.fit)
-    told = {name for c in causes for name in (c.id, *c.alternatives)}
-    if not causes:  # beside one, which may be a part of the saw-tooth, it stays unexplained
-        told |= made_by_rounding(identified, rounding)
-    named_rms = hypot(*(c.rms_arcsec for c in causes))
-    unnamed_rms = hypot(
-        identified.unnamed_rms(told), *(s.rms_arcsec for s in (jumps, again) if s is not None)
-    )
-    decision = decided(
-        causes,
-        unexplained_of(identified, tests, jumps, again, told),
-        named_rms=named_rms,
-        unnamed_rms=max(unnamed_rms, unnamed_share(identified, told) * named_rms),
-        structure=any(t.p_value < UNKNOWN_P_VALUE for t in tests),
-    )
+    left = left_over(explained)
+    decision = judged(explained, causes, left)
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = overruled(broken, beside=decision.unexplained)
@@ -156,7 +114,7 @@ def diagnose_sweep(
         gains_at_levels=levels,
     )
     written = written_model(explained, sweep, ids, gain)
-    return outcome, SweepAnalysis(explained, written.model, written.doubt, tuple(tests))
+    return outcome, SweepAnalysis(explained, written.model, written.doubt, left.tests)
 
 
 def _misread(
