@@ -28,7 +28,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if found and share > 0:
         yield Paragraph(
             f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
-            "the noise; no model does better than the noise, but by chance."
+            "the noise; only chance goes below it."
         )
 
 
