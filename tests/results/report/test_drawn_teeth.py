@@ -50,14 +50,17 @@ def written(folder: Path, name: str, ring: str, changes: Mapping[str, str] = NON
 
 
 def stiffness(path: Path, cache: str = "cache") -> Ended:
+    """With a cache beside the design's folder: a refusal writes nothing into that, whatever it solved before."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("FLEXSPLINE_CACHE", str(path.parent / cache))
+        patch.setenv("FLEXSPLINE_CACHE", str(path.parent.parent / cache))
         return flexspline("stiffness", path, "--json", folder=path.parent)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("teeth")
+    folder = tmp_path_factory.mktemp("teeth") / "designs"
+    folder.mkdir()
+    return folder
 
 
 @pytest.fixture(scope="module")
