@@ -50,7 +50,7 @@ def written(folder: Path, name: str, ring: str, changes: Mapping[str, str] = NON
 
 
 def stiffness(path: Path, cache: str = "cache") -> Ended:
-    """With a cache beside the design's folder: a refusal writes nothing into that, whatever it solved before."""
+    """With a cache beside the design's folder, into which a refusal writes nothing."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("FLEXSPLINE_CACHE", str(path.parent.parent / cache))
         return flexspline("stiffness", path, "--json", folder=path.parent)
