@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from math import log
+from itertools import product
+from math import inf, log
 
 import numpy as np
 
@@ -34,13 +35,15 @@ def rivals_of(
         return tuple(i for i in best.terms if evidence.terms[i].owner not in owners)
 
     present = {evidence.terms[i].owner for i in best.terms}
-    if evidence.columns.ahead:  # behind the gap too it may stand beside a rival
-        present |= {FRICTION}
     others = {t.cause.id for t in evidence.terms if t.cause} - present
+    beside: tuple[set[str], ...] = (set(),)
+    if evidence.columns.ahead:  # behind the gap too it may stand beside a rival
+        others -= {FRICTION}
+        beside = (set(), {FRICTION})
     mine = penalised(evidence, best.terms)
-    found: list[tuple[float, str, Candidate]] = []
-    for other in sorted(others):
-        allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
+    found: dict[str, tuple[float, Candidate]] = {}
+    for other, more in product(sorted(others), beside):
+        allowed = {other, *more, *(p for p in present - {cause} if not p.startswith("?"))}
         parts = known_causes()[other].made_of
         starts = [without({cause})]
         if cause in parts <= present:
@@ -57,9 +60,9 @@ def rivals_of(
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
-            found.append((gap, other, rival))
-    found.sort(key=lambda f: f[0])
-    return tuple(f[1] for f in found), (found[0][2] if found else None)
+            found[other] = min(found.get(other, (inf, rival)), (gap, rival), key=lambda f: f[0])
+    order = sorted(found, key=lambda other: found[other][0])
+    return tuple(order), (found[order[0]][1] if order else None)
 
 
 def _is_calibration(fit: SweepFit, owner: str) -> bool:

@@ -15,10 +15,12 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.sweep.ahead_tuning import ahead_element
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
-from flexspline.pipeline.diagnosis.sweep.rivals import penalised
+from flexspline.pipeline.diagnosis.sweep.regressors import FrictionAhead, design_matrix
+from flexspline.pipeline.diagnosis.sweep.rivals import penalised, rivals_of
+from flexspline.pipeline.diagnosis.sweep.search import Search
 
 STEEL_ALUMINIUM = 12e-6
 """/K by which they expand differently."""
@@ -106,3 +108,33 @@ def test_a_gap_beside_one_temperature_has_a_thermal_rival_that_metals_can_make(
     angle = angle + np.random.default_rng(5).normal(0, 0.5, len(angle))
     causes = diagnose_sweep(as_read(history, angle), PREDICTION)[0].causes
     assert {c.id: c.alternatives for c in causes} == {"clearance_offset": rivals}
+
+
+@pytest.mark.parametrize("ahead", [False, True])
+def test_beside_friction_ahead_of_the_gap_a_rival_may_have_friction_behind_it(ahead: bool) -> None:
+    """What a lag fits was made by creep of 0.6 arcsec and friction of 2 arcsec rms behind the gap."""
+    history = replace(sweep(cycles=4, hold=30, rows=60), temperature_C=None, input_angle_deg=None)
+    known = {k: known_causes()[k] for k in ("creep", "friction_hysteresis", "rate_dependence")}
+    columns = design_matrix(FitContext(PREDICTION, history), known)
+    if ahead:  # that takes nothing here: what is behind it is all that is fitted
+        nothing = FrictionAhead(ahead_element(0.1, history), np.zeros(len(history)))
+        columns = replace(columns, ahead=nothing)
+    kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
+
+    def effect(owner: str, wanted: dict[str, float]) -> np.ndarray:
+        at, *_ = [
+            t.at for t in columns.terms
+            if t.owner == owner and all(t.shape.get(k) == v for k, v in wanted.items())
+        ]  # fmt: skip
+        column = columns.all[:, at][:, 0].astype(float)
+        return np.asarray(column / np.sqrt(np.mean(column[kept] ** 2)))
+
+    target = 0.6 * effect("creep", {"shortest_s": 30.0, "exponent": 0.5})
+    target += 2.0 * effect("friction_hysteresis", {"power": 3.2, "held": 0})
+    evidence = gaussian_evidence(columns, target, kept, Noise(1.0, 0.0, 0.5))
+    search = Search(evidence)
+    lags = [i for i, t in enumerate(evidence.terms) if t.owner == "rate_dependence"]
+    best = max((search.candidate((i,)) for i in lags), key=lambda c: c.score)
+    rivals, _ = rivals_of(evidence, best, "rate_dependence")
+    # without friction ahead, that behind it is no part of a set in which it was not named
+    assert ("creep" in rivals) == ahead
