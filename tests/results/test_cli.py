@@ -190,7 +190,7 @@ def test_a_request_to_stop_leaves_no_half_written_file(
     time.sleep(0.5)
     process.send_signal(number)
     _, rest = process.communicate(timeout=60)
-    assert process.returncode == status
+    assert process.returncode == status, rest
     assert "interrupted" in rest
     assert "Traceback" not in rest
     assert not (tmp_path / "out").exists()
