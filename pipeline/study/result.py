@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.keys import value_at, with_values
+from flexspline.geometry.keys import with_values
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.figures import USUAL_FIGURES
@@ -38,12 +38,6 @@ class StudyResult:
     def about_scatter(self) -> bool:
         """Whether its designs are one gear's scatter, none better than another."""
         return self.study.file.run.method == "tolerance"
-
-    @property
-    def start_values(self) -> dict[str, float]:
-        """What the design that the study began with has for the varied keys, where it states them."""
-        found = {k: value_at(self.study.design, k) for k in self.study.file.vary}
-        return {k: v for k, v in found.items() if v is not None}
 
     def design_of(self, row: Row) -> Design:
         """The whole design of a row."""

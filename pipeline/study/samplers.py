@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexspline.geometry.keys import value_at
 from flexspline.pipeline.study.claims import ROW
 from flexspline.pipeline.study.polish import near, polish_of
 from flexspline.pipeline.study.study import Study
@@ -36,19 +36,15 @@ def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
     ]
 
 
-def own_values(study: Study) -> Values:
-    """Of the varied keys in the design that the study names; none where one lies outside its span."""
-    own: dict[str, float] = {}
+def start_in_spans(study: Study) -> Values:
+    """The values that the study begins with; none where a varied key has none within its span."""
+    values = study.start_values
     for key, span in study.file.vary.items():
-        value = value_at(study.design, key)
         low, high = span.ends
-        inside = value is not None and (
-            value in span.values if span.values else low <= value <= high
-        )
-        if value is None or not inside:
+        value = values.get(key, inf)
+        if not (value in span.values if span.values else low <= value <= high):
             return {}
-        own[key] = value
-    return own
+    return values
 
 
 def sampler_of(study: Study) -> BaseSampler:
@@ -79,7 +75,7 @@ def sampler_of(study: Study) -> BaseSampler:
         words = [file.run.seed, trial.number, *more]
         return int(np.random.SeedSequence(words).generate_state(1)[0])
 
-    own = own_values(study)
+    own = start_in_spans(study)
 
     class Seeded(BaseSampler):
         """Delegates to a sampler seeded for the trial; the first is the study's own design."""

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.keys import location_of
+from flexspline.geometry.keys import location_of, value_at
 from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.figures import TOTAL, USUAL_FIGURES
 from flexspline.pipeline.study.schema import StudyFile
@@ -35,6 +35,12 @@ class Study:
     def keys(self) -> tuple[str, ...]:
         """The design keys whose values change from design to design."""
         return (*self.file.vary, *self.file.link, *self.file.tolerance)
+
+    @property
+    def start_values(self) -> dict[str, float]:
+        """What the design that it begins with has for the varied keys, where it states them."""
+        found = {key: value_at(self.design, key) for key in self.file.vary}
+        return {key: value for key, value in found.items() if value is not None}
 
     @property
     def asked(self) -> frozenset[str]:

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rounding import of_torque_step_arcsec
+from flexspline.pipeline.diagnosis.sweep.rounding import torque_rounding_left_arcsec
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
@@ -181,7 +181,7 @@ def _encoder_notes(prepared: PreparedSweep) -> list[str]:
 def _torque_step_notes(explained: ExplainedSweep) -> list[str]:
     """That the torque is read in coarse steps, where that is more than the angle's noise."""
     prepared = explained.prepared
-    rounding = of_torque_step_arcsec(prepared, explained.identified.fit)
+    rounding = torque_rounding_left_arcsec(prepared, explained.identified.fit)
     if rounding**2 < prepared.noise.white / 2:
         return []
     return [

@@ -25,7 +25,7 @@ def design_table(result: StudyResult) -> Iterable[Block]:
     lines: list[tuple[str, ...]] = []
     for key in result.study.file.vary:
         q = entry(key)
-        values = (*(result.start_values for _ in begun), *(r.values for r in chosen))
+        values = (*(result.study.start_values for _ in begun), *(r.values for r in chosen))
         lines.append((q.axis, *(q.text(v[key]) if key in v else "" for v in values)))
     for key in _figures(result, chosen):
         cells = (_text(key, f) for f in (*begun, *(r.outcome.figures for r in chosen)))

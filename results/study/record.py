@@ -110,7 +110,7 @@ def _input(s: Scatter, i: int) -> dict[str, Any]:
 
 
 def _start(result: StudyResult, start: Outcome) -> dict[str, Any]:
-    found = {"values": result.start_values, "figures": published(start.figures)}
+    found = {"values": result.study.start_values, "figures": published(start.figures)}
     return found | ({"reason": start.reason} if start.reason else {})
 
 
@@ -133,7 +133,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         lines.append(f"  {incomplete(result)}")
     best = () if result.about_scatter else result.best(LISTED_DESIGNS)
     if best and result.start is not None:
-        begun = _line(result, "start", result.start_values, result.start)
+        begun = _line(result, "start", result.study.start_values, result.start)
         lines.append("; ".join(filter(None, (begun, start_breaks(result)))))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
     lines += [f"  {line}" for line in (*unbeaten_start(result), *misses(result))]

@@ -19,6 +19,11 @@ def to_one(columns: np.ndarray, least: float = ABOVE_ZERO) -> np.ndarray:
     return columns / np.maximum(np.abs(columns).max(axis=0), least)
 
 
+def less_fitted(values: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Values (n,) or (n, k) less what the columns (n, b) of a basis can be of them, by least squares."""
+    return np.asarray(values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0])
+
+
 def smooth(x: np.ndarray, degree: int = SPLINE) -> np.ndarray:
     """(n, degree) Legendre polynomials of degree 1 to `degree` over −1…1."""
     return np.polynomial.legendre.legvander(np.clip(x, -1, 1), degree)[:, 1:]

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import (
     MANY_LEVELS,
+    less_fitted,
     levels,
     smooth,
     to_one,
@@ -119,7 +120,7 @@ def over_temperature(rig: FitContext) -> Made:
     side = rig.history.sign
     linear = np.column_stack([side, warm * side])
     curved = warm**2 * side
-    bent = curved - linear @ np.linalg.lstsq(linear, curved, rcond=None)[0]
+    bent = less_fitted(curved, linear)
     if np.std(bent) > LEAST_BENT * np.std(curved):
         yield "temperature_C", UnnamedForm("bent_gap"), bent[:, None]
 

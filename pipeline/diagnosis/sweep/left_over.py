@@ -17,7 +17,10 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     ChannelTest,
     channel_tests,
 )
-from flexspline.pipeline.diagnosis.sweep.rounding import of_torque_step_arcsec, saw_tooth_arcsec
+from flexspline.pipeline.diagnosis.sweep.rounding import (
+    rounding_left_arcsec,
+    torque_rounding_left_arcsec,
+)
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
 from flexspline.pipeline.diagnosis.sweep.unexplained import made_by_rounding, unexplained_of
@@ -42,11 +45,11 @@ class LeftOver:
 def left_over(explained: ExplainedSweep) -> LeftOver:
     """What the best set of a race leaves."""
     prepared, fit = explained.prepared, explained.identified.fit
-    rounding = saw_tooth_arcsec(prepared, fit)
+    rounding = rounding_left_arcsec(prepared, fit)
     tests = [t for t in channel_tests(prepared, fit) if t.rms_arcsec > rounding]
     jumps = largest(*(test(prepared, fit) for test in (jumps_of, stuck_of, scatter_along_travel)))
     # the encoder's step is known to each of these tests
-    if jumps is not None and jumps.rms_arcsec < of_torque_step_arcsec(prepared, fit):
+    if jumps is not None and jumps.rms_arcsec < torque_rounding_left_arcsec(prepared, fit):
         jumps = None
     return LeftOver(tuple(tests), jumps, repeated_misfit(prepared, fit), rounding)
 

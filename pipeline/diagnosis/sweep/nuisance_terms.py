@@ -32,11 +32,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     zeros_apart,
 )
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
-from flexspline.pipeline.diagnosis.sweep.rig_nuisance import (
-    giving_way,
-    giving_way_each_load,
-    ringing,
-)
+from flexspline.pipeline.diagnosis.sweep.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     Made,
@@ -165,6 +161,5 @@ NUISANCE_KINDS = (
     _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
     _NuisanceKind(over_unit),
     _NuisanceKind(giving_way, positive=True),
-    _NuisanceKind(giving_way_each_load, positive=True),
     _NuisanceKind(ringing, less=_of_lags),
 )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.sweep.basis_functions import less_fitted
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 
@@ -20,7 +21,7 @@ def rms_beyond_calibration(fit: SweepFit, owner: str) -> float:
     kept, columns = fit.evidence.kept, fit.evidence.columns.base
     added = fit.added(owner)[kept]
     straight = columns[kept][:, : fit.units + 2]
-    return rms(added - straight @ np.linalg.lstsq(straight, added, rcond=None)[0])
+    return rms(less_fitted(added, straight))
 
 
 def rms_together(fit: SweepFit, owners: Sequence[str]) -> float:

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.basis_functions import less_fitted
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms
@@ -111,7 +112,7 @@ def _undone(fit: SweepFit, owners: Collection[str]) -> bool:
         if cause_id in owners:
             parts = np.column_stack([fit.added(cause_id)[kept], unnamed])
             basis = torque[:, None] ** np.arange(powers)
-            own, others = (parts - basis @ np.linalg.lstsq(basis, parts, rcond=None)[0]).T
+            own, others = less_fitted(parts, basis).T
             if own @ others < -UNDONE * (own @ own):
                 return True
     return False

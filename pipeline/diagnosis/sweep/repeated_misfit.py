@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     ChannelTest,
     Residual,
 )
-from flexspline.pipeline.diagnosis.sweep.rounding import saw_tooth_arcsec
+from flexspline.pipeline.diagnosis.sweep.rounding import rounding_left_arcsec
 
 PLACE_WIDTHS = (0.01, 0.02, 0.05)
 """Of the largest torque: a place is so wide; the first that gives no more than `MOST_TORQUE_PLACES`."""
@@ -39,7 +39,7 @@ def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | Non
     if codes is None:
         return None
     found = Residual.of(prepared, fit).tested("torque_Nm", codes)
-    rounding = saw_tooth_arcsec(prepared, fit)
+    rounding = rounding_left_arcsec(prepared, fit)
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
     if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding, of_torque):
         return None

@@ -37,8 +37,8 @@ the quickest ring most."""
 def giving_way(rig: FitContext) -> Made:
     """The output goes on while torque is high, and does not come back with it.
 
-    At once with the torque (a play operator), or at a rate in proportion to what the lock cannot hold; with
-    the torque and not against it, which would take back what friction adds.
+    At once with the torque (a play operator), at a rate in proportion to what the lock cannot hold, or by
+    another way in each load. With the torque: against it, it would take back what friction adds.
     """
     history, largest = rig.history, rig.torque_Nm
     limits = np.array(YIELDS) * largest
@@ -49,12 +49,6 @@ def giving_way(rig: FitContext) -> Made:
         way = _ways(history, limit)
         if np.ptp(way) > 0:
             yield "torque_amplitude", UnnamedForm("gives_way"), way[:, None]
-
-
-def giving_way_each_load(rig: FitContext) -> Made:
-    """The same by another way in each load."""
-    history = rig.history
-    limits = np.array(YIELDS) * rig.torque_Nm
     load = _loads(history, limits[0])
     if 2 <= load.max() + 1 <= MOST_LOADS:
         yield "torque_amplitude", UnnamedForm("gives_way"), _own(_ways(history, limits[0]), load)

@@ -6,13 +6,12 @@ from collections.abc import Collection
 from itertools import product
 from math import inf, log
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
+from flexspline.pipeline.diagnosis.sweep.basis_functions import less_fitted
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
@@ -69,7 +68,7 @@ def _is_calibration(fit: SweepFit, owner: str) -> bool:
     """Whether the record shows nothing of an owner's effect but a change of zero, compliance and gap."""
     evidence = fit.evidence
     effect = evidence.whitened(fit.added(owner)[:, None])[:, 0]
-    left = effect - evidence.base @ np.linalg.lstsq(evidence.base, effect, rcond=None)[0]
+    left = less_fitted(effect, evidence.base)
     return float(left @ left) / 2 < RIVAL_EVIDENCE
 
 

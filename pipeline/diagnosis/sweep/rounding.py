@@ -11,13 +11,13 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
 
-def saw_tooth_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
+def rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
     """Rms [arcsec]: no effect of angle or torque can be told below it."""
     of_angle = rounding_arcsec(prepared.sweep.angle_arcsec, prepared.noise.white)
-    return hypot(of_angle, of_torque_step_arcsec(prepared, fit))
+    return hypot(of_angle, torque_rounding_left_arcsec(prepared, fit))
 
 
-def of_torque_step_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
+def torque_rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
     """That of a torque read in coarse steps alone."""
     history = prepared.sweep.history
     rounded = undithered(torque_noise_Nm(history) ** 2, torque_step_Nm(history))

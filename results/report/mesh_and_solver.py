@@ -1,0 +1,101 @@
+"""The report's section on meshes and solver: how each stiffness was found, and how well it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import chain
+
+from flexspline.results.file_names import CONVERGENCE
+from flexspline.results.quantities import bounds_kind, quantity
+from flexspline.results.report import tables
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.document import Block, Column, Heading, Paragraph, Picture, Table
+from flexspline.results.report.picture_blocks import shown
+from flexspline.results.report.spans import NBSP, Words, bold, plain, symbol, worded
+
+GUARANTEED = bounds_kind(True)
+
+
+def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
+    """Pictures of the meshes, the table of solves, what each one's bounds are, and the time."""
+    yield Heading("Mesh and solver", "solver")
+    yield from shown(
+        content,
+        roomy,
+        Picture("flexspline_mesh", _mesh_of(content, "flexspline", "K_b")),
+        Picture("shaft_mesh", _mesh_of(content, "output shaft", "K_e")),
+    )
+    solves = tables.solves(content)
+    heads = ("Meshes", "Elements", "Unknowns", "Bounds", "Residual", "Energy – work")
+    keys = ("meshes", "elements", "dofs", "half_width", "residual", "energy")
+    yield Table(
+        columns=(
+            Column(""), Column("Model", grow=1), Column("Part solved", grow=1.2),
+            *(Column(h, "right") for h in heads[:-1]), Column(heads[-1], "right", 0.9),
+        ),
+        rows=tuple(
+            (symbol(s["symbol"]), s["model"], s["symmetry"], *(s[k] for k in keys)) for s in solves
+        ),
+        caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
+        "“energy – work” is the relative difference of the stiffness from strain energy and from the "
+        f"work of torque or loads; {tables.UNCHECKED} where a check was not made.",
+    )  # fmt: skip
+    for method, kind in dict.fromkeys((s["method"], s["kind"]) for s in solves):
+        alike = [s for s in solves if (s["method"], s["kind"]) == (method, kind)]
+        yield Paragraph(_bounds_of(content, method, alike))
+    if not any(len(s.levels) > 1 for s in (content.K_b, content.K_e)):
+        yield Paragraph(
+            worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
+        )
+    convergence = "Stiffness against the number of unknowns, as difference from the value reported."
+    yield from shown(content, roomy, Picture(CONVERGENCE, convergence, 88))
+    stages = content.stage_seconds or {}
+    if stages:
+        each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
+        yield Paragraph(
+            bold("Elapsed time:")
+            + plain(
+                f" {each}. Stages run side by side, so these do not add up; those read from the cache "
+                "are not listed."
+            )
+        )
+
+
+def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
+    """A mesh's caption: which of the part's stiffnesses, whose names begin alike, are not from that mesh."""
+    said = plain(f"Mesh of the {part} and its named surfaces.")
+    own = {name: s for name, s in content.stiffnesses.items() if name.startswith(letter)}
+    turned = [name for name, s in own.items() if s.model == "axisymmetric"]
+    if not turned:
+        return said
+    return (
+        said
+        + plain(" ")
+        + _listed(quantity(f"{name}_Nm_per_rad").symbol for name in turned)
+        + plain(
+            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this one is for the "
+            "pictures of stress"
+            + (" and the other stiffnesses." if len(turned) < len(own) else ".")
+        )
+    )
+
+
+def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:
+    said = (
+        bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
+    )
+    if these[0]["kind"] == GUARANTEED:
+        said += plain("These bounds hold without exception. ")
+    else:
+        said += plain("This is an estimate, not a guarantee. ")
+    wide = [s["symbol"] for s in these if s["wide"]]
+    said += plain(
+        f"The wanted tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+    )
+    return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
+
+
+def _listed(symbols: Iterable[str]) -> Words:
+    return tuple(chain.from_iterable(
+        symbol(s) if i == 0 else plain(", ") + symbol(s) for i, s in enumerate(symbols)
+    ))  # fmt: skip
