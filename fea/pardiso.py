@@ -10,8 +10,8 @@ from weakref import finalize
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.mkl import address, mkl
-from flexspline.fea.solid.errors import SolveError
 
 PARDISO_OUT_OF_MEMORY = -2
 """oneMKL's code for "not enough memory"."""

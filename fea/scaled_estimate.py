@@ -8,6 +8,7 @@ one before, K_1 − K_2 = d leaves d·q/(1 − q).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,14 @@ from flexspline.fea.types import MeshLevel
 ERROR_RATIOS = (0.6, 0.75)
 """q of meshes of twice the elements each: 0.59 and 0.72 on a sharply stepped shaft with ten holes, meshed
 evenly to 65 000 elements. The bounds hold to twice what is left: for q up to 0.86."""
+
+
+class EstimatedBounds(NamedTuple):
+    """K with the finest mesh's above it and an estimate below it, twice as far off [N·m/rad]."""
+
+    K: float
+    lower: float
+    upper: float
 
 
 @dataclass
@@ -69,5 +78,18 @@ class ScaledEstimate:
 
     @property
     def relative(self) -> float:
-        """Error of the finest mesh's K over that K."""
+        """Error of the finest mesh's energy over that energy."""
         return self.scale * self.estimates[-1]
+
+    def at_given_angle(self) -> EstimatedBounds:
+        """Of a K that is proportional to the energy: a mesh stores too much of it."""
+        K, error = self.K_Nm_per_rad, self.relative
+        return EstimatedBounds(K * (1 - error), K * (1 - 2 * error), K)
+
+    def at_given_torque(self, missing: float = 0.0) -> EstimatedBounds:
+        """Of a 1/K that is proportional to the energy: a mesh stores too little of it.
+
+        `missing` bounds, relative, what it lacks besides, such as load that is left out.
+        """
+        K, error = self.K_Nm_per_rad, self.relative
+        return EstimatedBounds(K / (1 + error + missing / 2), K / (1 + 2 * error + missing), K)

@@ -7,7 +7,7 @@ What was computed until then is given all the same; the clause travels with it (
 from __future__ import annotations
 
 from flexspline.fea.deadline import OutOfTimeError
-from flexspline.fea.solid.errors import MemoryShortError, MesherTimeError
+from flexspline.fea.errors import MemoryShortError, MesherTimeError
 from flexspline.fea.types import Shortfall, Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError, FlexsplineError
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from flexspline.fea.solid.errors import NoBetterMeshError
+from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.types import MET, Stiffness, StiffnessModel
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies

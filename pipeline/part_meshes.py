@@ -12,8 +12,8 @@ from typing import Literal, get_args
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.errors import MeshQualityError, SolidError, TooManyElementsError
 from flexspline.fea.solid.defaults import surface_to_mesh
-from flexspline.fea.solid.errors import MeshQualityError, SolidError, TooManyElementsError
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface

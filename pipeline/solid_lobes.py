@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from math import inf
 from typing import Any
 
-from flexspline.fea.solid.errors import NoBetterMeshError, SolidError, TooManyElementsError
+from flexspline.fea.errors import NoBetterMeshError, SolidError, TooManyElementsError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness, promised
-from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
+from flexspline.fea.solid.stiffness import USUAL_ERROR_SCALE
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
@@ -90,7 +90,7 @@ def lobe_meshes(
                 expected = fault.expected if isinstance(fault, NoBetterMeshError) else inf
                 yield _of_torsion(flexspline, supported, known, expected)
             raise
-        yield mesh, USUAL_EFFICIENCY
+        yield mesh, USUAL_ERROR_SCALE
 
 
 def _usual_of_held(flexspline: PartModel) -> float:

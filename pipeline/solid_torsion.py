@@ -8,13 +8,13 @@ from math import inf, log2
 import numpy as np
 
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.scaled_estimate import ERROR_RATIOS
-from flexspline.fea.solid.errors import (
+from flexspline.fea.errors import (
     MesherTimeError,
     MeshQualityError,
     SolidError,
     TooManyElementsError,
 )
+from flexspline.fea.scaled_estimate import ERROR_RATIOS
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec

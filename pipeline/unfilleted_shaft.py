@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.solid.errors import SolidError, TooManyElementsError
+from flexspline.fea.errors import SolidError, TooManyElementsError
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import has_unfilleted_bodies, unfilleted_bodies

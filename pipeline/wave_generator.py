@@ -7,9 +7,9 @@ from math import dist, hypot, radians
 from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cyclic import half_repeat
-from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.load_cases import ellipse
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field

@@ -7,8 +7,8 @@ from threading import Lock
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import PardisoFactors, pardiso
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 

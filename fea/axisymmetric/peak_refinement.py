@@ -11,11 +11,11 @@ from math import cos, inf, pi, sin
 
 from flexspline.fea.axisymmetric.bisection import refined_with_parents
 from flexspline.fea.axisymmetric.harmonics import Amplitudes, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.peak import coarse_at_border, peak_stress
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField, StressLevel
-from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refine, refinements

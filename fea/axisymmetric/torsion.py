@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined, refined_twice
+from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
 from flexspline.fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
@@ -19,8 +20,6 @@ TORSION_BULK = 0.75
 TORSION_TWICE_SHARE = 0.5
 """Share of the gap whose triangles are refined twice a round: they lie where the stress is singular, and K to
 0.2 % takes two thirds of the time."""
-MOST_TRIANGLES = 400_000
-"""A mesh with more of them is the last one."""
 
 
 def torsional_stiffness(
@@ -92,15 +91,6 @@ class _Bounds:
         return refined_twice(
             mesh, bulk(self._share, TORSION_BULK), bulk(self._share, TORSION_TWICE_SHARE)
         )
-
-
-def bulk(share: np.ndarray, fraction: float) -> np.ndarray:
-    """Mask of the fewest triangles that together hold the given fraction of the whole."""
-    order = np.argsort(-share)
-    held = np.cumsum(share[order])
-    mask = np.zeros(len(share), bool)
-    mask[order[: int(np.searchsorted(held, fraction * held[-1])) + 1]] = True
-    return mask
 
 
 def _level(mesh: MeridianMesh, found: Bracket, per_G: float) -> MeshLevel:

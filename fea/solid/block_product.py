@@ -9,8 +9,8 @@ from weakref import finalize
 import numpy as np
 from scipy.sparse import bsr_matrix
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.mkl import address, mkl
-from flexspline.fea.solid.errors import SolveError
 
 AS_IT_IS, GENERAL, ROWS_FIRST = 10, 20, 101
 """oneMKL's words: not transposed; of no special form; blocks row by row."""

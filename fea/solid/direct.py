@@ -12,8 +12,8 @@ from contextlib import contextmanager, suppress
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import PardisoFactors, pardiso
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.iteration import conjugate_gradients, dot
 from flexspline.fea.superlu import superlu
 

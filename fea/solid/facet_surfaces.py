@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface
 
 

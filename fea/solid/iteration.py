@@ -8,7 +8,7 @@ from math import inf, log
 
 import numpy as np
 
-from flexspline.fea.solid.errors import SolveError
+from flexspline.fea.errors import SolveError
 
 Operator = Callable[[np.ndarray], np.ndarray]
 RATE_STEPS, RATE_AGAIN = 10, 10

@@ -8,9 +8,9 @@ from math import inf
 
 import numpy as np
 
+from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
 from flexspline.fea.solid.elements import jacobian_ratio
-from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
 from flexspline.fea.solid.quadratic import JACOBIAN_RATIO, with_middles

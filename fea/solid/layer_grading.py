@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
-from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
 from flexspline.fea.solid.layers import RING_STEP
 from flexspline.fea.solid.polar import cartesian, middles, polar

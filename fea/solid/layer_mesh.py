@@ -7,8 +7,8 @@ from math import inf
 
 import numpy as np
 
+from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices
-from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.facet_surfaces import surfaces_of
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.polar import cartesian

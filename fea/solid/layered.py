@@ -12,8 +12,8 @@ from math import inf, radians
 
 import numpy as np
 
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.bisect import Simplices
-from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.layer_curving import LayeredMesh, quadratic
 from flexspline.fea.solid.layer_edges import seams_of
 from flexspline.fea.solid.layer_grading import graded

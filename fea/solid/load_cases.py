@@ -9,8 +9,8 @@ import numpy as np
 from skfem import Functional, LinearForm
 
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
+from flexspline.fea.errors import SolveError
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
 from flexspline.fea.solid.unfold import Parity, unfolding

@@ -14,8 +14,8 @@ from math import inf, sqrt
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lobes import solve_lobes
+from flexspline.fea.axisymmetric.marking import bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.torsion import bulk
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
@@ -24,7 +24,7 @@ from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.cyclic import half_repeat, larger_deg
 from flexspline.fea.solid.load_cases import lobes
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import EFFICIENCY, USUAL_EFFICIENCY, level_of
+from flexspline.fea.solid.stiffness import ERROR_SCALES, USUAL_ERROR_SCALE, level_of
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
@@ -63,7 +63,7 @@ def finer_mesh(
 
 def promised(tolerance: float, number: int) -> float:
     """Relative bounds ± of K that the mesh of that number is made for."""
-    meridian = USUAL_EFFICIENCY * MERIDIAN_SHARE * NEXT_SHARE**number
+    meridian = USUAL_ERROR_SCALE * MERIDIAN_SHARE * NEXT_SHARE**number
     return tolerance * (meridian + STEP_SHARE * NEXT_STEP ** (4 * number))
 
 
@@ -108,15 +108,15 @@ def lobe_stiffness(
     ComputationError, MemoryError : of the first mesh.
     """
     mesh, usual = next(meshes)
-    estimate = ScaledEstimate(usual, EFFICIENCY)
+    estimate = ScaledEstimate(usual, ERROR_SCALES)
     rest = (mesh for mesh, _ in meshes)
     found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate)
     shortfall = refine(found, mesh, Deadline(limit_s))
-    upper, error = estimate.K_Nm_per_rad, estimate.relative
+    bounds = estimate.at_given_torque()
     return Stiffness(
-        K_Nm_per_rad=upper / (1 + error),
-        lower_Nm_per_rad=upper / (1 + 2 * error),
-        upper_Nm_per_rad=upper,
+        K_Nm_per_rad=bounds.K,
+        lower_Nm_per_rad=bounds.lower,
+        upper_Nm_per_rad=bounds.upper,
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,

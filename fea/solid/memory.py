@@ -13,8 +13,8 @@ from typing import Literal
 import psutil
 
 from flexspline.fea.address_space import free_address_space_bytes
+from flexspline.fea.errors import MemoryShortError
 from flexspline.fea.pardiso import pardiso
-from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 25_000, False: 50_000}

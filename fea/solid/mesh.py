@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.imprint import Meshed, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles

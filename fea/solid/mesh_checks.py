@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.flatness import longest_edges
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.tetwild import signed_volumes

@@ -7,8 +7,8 @@ from math import inf
 
 import numpy as np
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.quadratic_triangle import lattice_values
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.stress import nodal_stress, von_mises
 from flexspline.fea.solid.unfold import folded
 from flexspline.fea.stress_rule import judged

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.elements import jacobian_ratio, linear_mesh
-from flexspline.fea.solid.errors import MeshQualityError
 
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element

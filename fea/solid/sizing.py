@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.errors import SolidError
 from flexspline.fea.solid.tetwild import Background
 
 MOST_GRID_POINTS = 500_000

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.surfaces import Plane, Surface, sector_planes
 

@@ -11,8 +11,8 @@ from scipy.sparse import csr_matrix
 from skfem import condense
 
 from flexspline.fea.axisymmetric.harmonics import LOST_ENERGY_LIMIT
+from flexspline.fea.errors import IterationError, SolveError
 from flexspline.fea.solid.direct import direct
-from flexspline.fea.solid.errors import IterationError, SolveError
 from flexspline.fea.solid.iteration import dot
 from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_of_factors
 from flexspline.fea.solid.twolevel import iterate

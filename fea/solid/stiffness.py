@@ -35,12 +35,12 @@ where a specification tells the next one."""
 MAX_LEVELS = 5
 """Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
 their edges go to as little as 1/256."""
-EFFICIENCY = (1.5, 3.1)
+ERROR_SCALES = (1.5, 3.1)
 """Range of c believed: 1.5 to 2.8 on cups, hats and shafts, swept and not, against two-sided bounds."""
-EFFICIENCY_BY_ERROR = (2.5, 4.2)
+ERROR_SCALES_BY_ERROR = (2.5, 4.2)
 """The same on meshes that follow the error: 4.0 and 4.2 with 31 000 and 62 000 elements of a shaft with three
 wide holes, against 128 000; its first two meshes told 2.0, and the bounds from that missed K by 0.05 %."""
-USUAL_EFFICIENCY = 2.0
+USUAL_ERROR_SCALE = 2.0
 """c before two meshes can tell, the middle of those measured: the bounds hold for c up to twice it."""
 NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
@@ -107,7 +107,7 @@ class _SolidTorsion:
         self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
-        self.estimate = ScaledEstimate(USUAL_EFFICIENCY, EFFICIENCY)
+        self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
         self.meshes: list[TetMesh] = []
 
     def mesh(self, spec: MeshSpec) -> TetMesh:
@@ -142,7 +142,7 @@ class _SolidTorsion:
             return None
         made = self._by_error(mesh, self._errors, self.half / self._tolerance)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, ERROR_RATIOS
+            self.estimate.believed, self.estimate.falls = ERROR_SCALES_BY_ERROR, ERROR_RATIOS
             return made
         step = near_step(self._tolerance, self.half)
         left_s = self._deadline.limit_s - self._deadline.elapsed()
@@ -182,13 +182,12 @@ def level_of(solved: SolvedStiffness) -> MeshLevel:
 
 
 def _stiffness(estimate: ScaledEstimate, symmetry: str, shortfall: Shortfall) -> Stiffness:
-    upper, meshes = estimate.K_Nm_per_rad, len(estimate.levels)
-    error = estimate.relative * upper
+    found, meshes = estimate.at_given_angle(), len(estimate.levels)
     how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"
     return Stiffness(
-        K_Nm_per_rad=upper - error,
-        lower_Nm_per_rad=upper - 2 * error,
-        upper_Nm_per_rad=upper,
+        K_Nm_per_rad=found.K,
+        lower_Nm_per_rad=found.lower,
+        upper_Nm_per_rad=found.upper,
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,

@@ -16,8 +16,8 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, HoledColumn, column_of
-from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.facet_surfaces import surfaces_of
 from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec

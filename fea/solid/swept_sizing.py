@@ -10,8 +10,8 @@ import numpy as np
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, HoledColumn
-from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
 

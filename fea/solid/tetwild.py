@@ -21,7 +21,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from flexspline.fea.child_python import child_command
-from flexspline.fea.solid.errors import MesherError, MesherTimeError
+from flexspline.fea.errors import MesherError, MesherTimeError
 
 STOP_ENERGY = 10.0
 """fTetWild's own. AMIPS energy, of which a regular tetrahedron has 3."""

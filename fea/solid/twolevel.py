@@ -14,10 +14,10 @@ from math import inf
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, diags
 
+from flexspline.fea.errors import IterationError
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.block_product import BlockProduct
 from flexspline.fea.solid.direct import factorised
-from flexspline.fea.solid.errors import IterationError
 from flexspline.fea.solid.iteration import conjugate_gradients, dot
 from flexspline.fea.types import TetMesh
 

@@ -111,7 +111,21 @@ def test_two_meshes_give_the_scale_of_an_estimate() -> None:
     assert (found.scale, found.relative) == (2.0, 2.0 * 4.0 / 110.0)
     found.add(level(104.0), 1.6 / 104.0)
     assert found.scale == pytest.approx(2.5, rel=1e-12)
-    assert found.K_Nm_per_rad * (1 - found.relative) == pytest.approx(100.0, rel=1e-12)
+    bounds = found.at_given_angle()
+    assert bounds == pytest.approx((100.0, 96.0, 104.0), rel=1e-12)
+
+
+def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
+    """1/K = 0.0100; meshes 10 and 4 % too stiff by their energy, a hundredth of it left out besides."""
+    found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
+    found.add(level(1 / 0.0090), 0.0004 / 0.0090)
+    found.add(level(1 / 0.0096), 0.00016 / 0.0096)
+    assert 1 / found.at_given_torque().upper == pytest.approx(0.0096)
+    error = found.relative
+    assert [1 / K for K in found.at_given_torque()] == pytest.approx(
+        [0.0096 * (1 + error), 0.0096 * (1 + 2 * error), 0.0096], rel=1e-12
+    )
+    assert 1 / found.at_given_torque(0.01).lower == pytest.approx(0.0096 * (1.01 + 2 * error), rel=1e-12)
 
 
 @pytest.mark.parametrize(

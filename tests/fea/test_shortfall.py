@@ -9,10 +9,10 @@ import pytest
 from example_cup import CUP
 
 from flexspline.fea.axisymmetric import lobes, peak_refinement, stress, torsion
+from flexspline.fea.errors import MemoryShortError, MesherError, MesherTimeError
 from flexspline.fea.shortfall import ToleranceError, missing_because, next_mesh_failed, settled
 from flexspline.fea.solid import stiffness as solid
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.errors import MemoryShortError, MesherError, MesherTimeError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
@@ -95,7 +95,7 @@ def test_lobes_before_a_mesh_that_fails(supported: bool, monkeypatch) -> None:
     assert (len(found.levels), found.guaranteed) == (1, False)
     assert WHY in found.shortfall.words
     # one mesh: the largest factor of true over estimated error that is believed
-    assert found.error_scale == lobes.EFFICIENCY[1]
+    assert found.error_scale == lobes.ERROR_SCALES[1]
     assert found.lower_Nm_per_rad <= true.K_Nm_per_rad <= found.upper_Nm_per_rad
 
 
@@ -143,7 +143,7 @@ def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkey
     found, said = solved(1, 5, monkeypatch)
     assert WHY in found.shortfall.words
     assert WHY in said[-1]
-    assert found.error_scale == solid.USUAL_EFFICIENCY
+    assert found.error_scale == solid.USUAL_ERROR_SCALE
     # one mesh: bounds as wide as twice the usual factor of true over estimated error
     assert held(found, exact)
 

@@ -10,7 +10,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
-from flexspline.fea.solid.errors import NoBetterMeshError
+from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError

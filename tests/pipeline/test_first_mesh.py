@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.fea.errors import MesherTimeError, TooManyElementsError
 from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.errors import MesherTimeError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh

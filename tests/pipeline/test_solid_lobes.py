@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 
-from flexspline.fea.solid.errors import NoBetterMeshError
+from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.solid.lobes import promised
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design

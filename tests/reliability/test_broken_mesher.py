@@ -15,8 +15,8 @@ import numpy as np
 import psutil
 import pytest
 
+from flexspline.fea.errors import MesherError
 from flexspline.fea.solid import tetwild
-from flexspline.fea.solid.errors import MesherError
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)

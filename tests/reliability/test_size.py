@@ -13,7 +13,7 @@ import pytest
 from example_files import EXAMPLES
 from shell import command, environment
 
-from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.errors import MemoryShortError
 from flexspline.fea.solid.memory import available_bytes, check_before_assembly
 
 GB = 2**30
@@ -28,7 +28,7 @@ from dataclasses import replace
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.errors import MemoryShortError
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic

@@ -13,8 +13,8 @@ from scipy.sparse import csr_matrix, diags, eye_array, kron
 
 from flexspline.fea.axisymmetric import factors
 from flexspline.fea.axisymmetric.factors import PARDISO_AT_ONCE_FROM, PatternSolver, solved
+from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import PardisoFactors, pardiso
-from flexspline.fea.solid.errors import SolveError
 
 WIDTH, WIDER = 80, 100
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.elements import NODES, quadratic_mesh, reference_values
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.solver import solve

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, diags
 
+from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import pardiso
 from flexspline.fea.solid import direct as module
 from flexspline.fea.solid.direct import direct, factorised
-from flexspline.fea.solid.errors import SolveError
 
 pytestmark = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
 

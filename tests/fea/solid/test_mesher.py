@@ -12,9 +12,9 @@ from example_files import EXAMPLES
 from scipy.integrate import quad
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.errors import MesherError, MeshQualityError
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import jacobian_ratio
-from flexspline.fea.solid.errors import MesherError, MeshQualityError
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import JACOBIAN_RATIO

@@ -16,10 +16,10 @@ from scipy.integrate import quad
 from scipy.spatial import cKDTree
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.errors import SolidError
 from flexspline.fea.solid.column import column_of
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import jacobian_ratio
-from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import Model

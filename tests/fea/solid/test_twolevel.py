@@ -15,10 +15,10 @@ import psutil
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.fea.errors import IterationError, MemoryShortError, SolveError
 from flexspline.fea.solid import memory, twolevel
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.errors import IterationError, MemoryShortError, SolveError
 from flexspline.fea.solid.iteration import conjugate_gradients
 from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, ellipse, lobes, torsion
 from flexspline.fea.solid.model import Model

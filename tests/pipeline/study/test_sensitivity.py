@@ -11,7 +11,7 @@ from example_files import EXAMPLES
 from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
 from flexspline.fea.axisymmetric.surface_layer import HeldSurfaceError, layer_stiffness
 from flexspline.fea.axisymmetric.twist import Twist, twist
-from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.errors import MemoryShortError
 from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError

@@ -10,7 +10,7 @@ from example_files import EXAMPLES
 from study_bench import WALL, quick, study_of, threads
 
 from flexspline.fea.deadline import OutOfTimeError
-from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.errors import MemoryShortError
 from flexspline.geometry.design import Solver
 from flexspline.geometry.errors import GeometryError
 from flexspline.geometry.keys import without_holes

@@ -1,4 +1,4 @@
-"""What can go wrong in a solid model; each error carries its numbers."""
+"""What can go wrong in a model and its solve; each error carries its numbers."""
 
 from __future__ import annotations
 
