@@ -73,7 +73,7 @@ def drawings() -> dict[str, str]:
 
 
 def written(page: str) -> str:
-    """The page with its drawings made anew."""
+    """The page with its drawings made again."""
     for name, drawing in drawings().items():
         mark = MARK.format(name)
         before, after = page.split(mark)

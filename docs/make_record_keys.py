@@ -41,7 +41,7 @@ def tables() -> dict[str, str]:
 
 
 def written(page: str) -> str:
-    """The page with its tables made anew; each ends at an empty line."""
+    """The page with its tables made again; each ends at an empty line."""
     for name, table in tables().items():
         mark = MARK.format(name)
         before, after = page.split(mark)

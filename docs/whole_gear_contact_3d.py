@@ -16,7 +16,7 @@ from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sized import sized_template
-from flexspline.pipeline.gear import CARRIES
+from flexspline.pipeline.gear import CARRYING_SHARE
 from flexspline.pipeline.gear_model import gear_model
 
 RECORD = Path(__file__).parents[1] / "benchmarks" / "gear_contact_3d.json"
@@ -104,7 +104,7 @@ def beside(found: dict[str, Any], mesh: str, curve: str, places: int) -> Beside:
 def teeth_of(model: GearModel, at: Equilibrium) -> int:
     """How many carry, in the whole gear."""
     force = np.abs(model.pair_forces(at))
-    return round(2 * float((force > CARRIES * force.max()).sum()) * model.teeth_per_station)
+    return round(2 * float((force > CARRYING_SHARE * force.max()).sum()) * model.teeth_per_station)
 
 
 def curves_table(found: dict[str, Any]) -> str:

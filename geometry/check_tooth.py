@@ -10,7 +10,7 @@ from flexspline.geometry.check_flexspline import thickest_ring
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 from flexspline.geometry.tooth import half_thickness, tip_radius
 
@@ -25,7 +25,7 @@ def ring_ends(design: Design) -> tuple[float, float]:
     """
     f, gear = design.flexspline, design.gear
     pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
-    if f.teeth == "none" or pitch - land <= f.wall_radius + SAME:
+    if f.teeth == "none" or pitch - land <= f.wall_radius + SAME_mm:
         return 0.0, inf
     margin = 1e-6 * gear.module_mm  # below the digits in which the ends are told
     low, high = f.wall_radius, pitch - land - margin
@@ -44,9 +44,9 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
         return
     f, gear = design.flexspline, design.gear
     pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
-    if pitch - land <= f.wall_radius + SAME:
+    if pitch - land <= f.wall_radius + SAME_mm:
         least = f.wall_radius / (gear.teeth_flexspline / 2 - SMALLEST_LAND)
-        room = span(least * (1 + 1e-6) + SAME, MODULE_mm.high, 4)
+        room = span(least * (1 + 1e-6) + SAME_mm, MODULE_mm.high, 4)
         circles = (
             f"the pitch circle, radius {pitch:.4g} mm, lies within the tube, radius "
             f"{f.wall_radius:.4g} mm"

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.geometry.outline import SAME, Meridian, Point, Segment, distance
+from flexspline.geometry.outline import Meridian, Point, SAME_mm, Segment, distance
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.shapes import Cup, Flexspline, Hat
 
@@ -26,7 +26,7 @@ class _Corner:
 
 def _close(corners: list[_Corner], cuts: list[Segment]) -> Meridian:
     """Round the corners that ask for it and join them to a closed outline."""
-    kept = [c for i, c in enumerate(corners) if distance(c.at, corners[i - 1].at) > SAME]
+    kept = [c for i, c in enumerate(corners) if distance(c.at, corners[i - 1].at) > SAME_mm]
     entry: list[Point] = []
     leave: list[Point] = []
     arcs: list[Segment | None] = []
@@ -50,7 +50,7 @@ def _close(corners: list[_Corner], cuts: list[Segment]) -> Meridian:
         arcs.append(Segment(a, b, _pair(centre)))
     segments: list[Segment] = []
     for i, c in enumerate(kept):
-        if distance(leave[i - 1], entry[i]) > SAME:
+        if distance(leave[i - 1], entry[i]) > SAME_mm:
             segments.append(Segment(leave[i - 1], entry[i], patch=c.patch))
         arc = arcs[i]
         if arc is not None:
@@ -133,12 +133,12 @@ def shaft_meridian(s: Shaft) -> Meridian:
         r, bore = seg.outer_diameter_mm / 2, seg.inner_diameter_mm / 2
         below = s.segment[i - 1].outer_diameter_mm / 2 if i else 0.0
         above = s.segment[i + 1].outer_diameter_mm / 2 if i + 1 < len(s.segment) else 0.0
-        outer.append(_Corner((r, z), fillet=s.fillet_mm if i and below > r + SAME else 0.0))
-        if z + SAME < grip_start < top - SAME:
+        outer.append(_Corner((r, z), fillet=s.fillet_mm if i and below > r + SAME_mm else 0.0))
+        if z + SAME_mm < grip_start < top - SAME_mm:
             outer.append(_Corner((r, grip_start)))
             cuts.append(Segment((bore, grip_start), (r, grip_start)))
-        patch = "grip" if grip_start < top - SAME else None
-        outer.append(_Corner((r, top), patch, s.fillet_mm if above > r + SAME else 0.0))
+        patch = "grip" if grip_start < top - SAME_mm else None
+        outer.append(_Corner((r, top), patch, s.fillet_mm if above > r + SAME_mm else 0.0))
         inner += [_Corner((bore, z)), _Corner((bore, top))]
         z = top
     first = s.segment[0]

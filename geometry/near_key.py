@@ -8,7 +8,7 @@ from difflib import get_close_matches
 LONGEST = 200
 """Letters of a key that are compared: a file may hold one of thousands, and difflib's time grows with their
 square."""
-ALIKE = 0.6
+LEAST_SIMILARITY = 0.6
 """The least of difflib's ratio, from 0 (nothing in common) to 1 (equal): its default."""
 
 
@@ -20,5 +20,5 @@ def nearest_key(key: str, known: Iterable[str]) -> str | None:
     >>> nearest_key("modul_mm", ["module_mm", "teeth_flexspline"])
     'module_mm'
     """
-    found = get_close_matches(key[:LONGEST], list(known), n=1, cutoff=ALIKE)
+    found = get_close_matches(key[:LONGEST], list(known), n=1, cutoff=LEAST_SIMILARITY)
     return found[0] if found else None

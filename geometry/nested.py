@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
 
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
@@ -56,13 +56,14 @@ def nested_bodies(part: Part) -> NestedBodies:
 def has_unfilleted_bodies(part: Part) -> bool:
     """Whether a shaft lies between two without fillets: it has some, and no moved step reaches the grip."""
     shape = part.shape
-    if not isinstance(shape, Shaft) or shape.fillet_mm <= SAME or len(shape.segment) == 1:
+    if not isinstance(shape, Shaft) or shape.fillet_mm <= SAME_mm or len(shape.segment) == 1:
         return False
     *_, before, last = shape.segment
-    thinner = last.outer_diameter_mm < before.outer_diameter_mm - SAME
+    thinner = last.outer_diameter_mm < before.outer_diameter_mm - SAME_mm
     free = last.length_mm - (shape.fillet_mm if thinner else 0.0)
     return (
-        shape.grip_length_mm <= free - SAME and shape.segment[0].length_mm > shape.fillet_mm + SAME
+        shape.grip_length_mm <= free - SAME_mm
+        and shape.segment[0].length_mm > shape.fillet_mm + SAME_mm
     )
 
 
@@ -84,13 +85,13 @@ def _moved_steps(part: Part, shape: Shaft) -> tuple[ShaftSegment, ...]:
     outer = [0.0, *(s.outer_diameter_mm for s in shape.segment), 0.0]
     for before, segment, after in zip(outer, shape.segment, outer[2:], strict=False):
         own = segment.outer_diameter_mm
-        low, high = (shape.fillet_mm if o > own + SAME else 0.0 for o in (before, after))
+        low, high = (shape.fillet_mm if o > own + SAME_mm else 0.0 for o in (before, after))
         for length, diameter in (
             (low, before),
             (segment.length_mm - low - high, own),
             (high, after),
         ):
-            if length > SAME:
+            if length > SAME_mm:
                 piece = {"length_mm": length, "outer_diameter_mm": diameter}
                 pieces.append(segment.model_copy(update=piece))
     if part.bolts is None:
@@ -102,7 +103,7 @@ def _holes_may_deepen(part: Part, shape: Shaft) -> bool:
     """Whether holes may go through the flange's moved step too: nothing of the part is over them."""
     assert part.bolts is not None
     flange, above = shape.segment[:2]
-    if above.outer_diameter_mm > flange.outer_diameter_mm - SAME:
+    if above.outer_diameter_mm > flange.outer_diameter_mm - SAME_mm:
         return False
     beside = above.outer_diameter_mm / 2 + shape.fillet_mm
     return part.bolts.inner >= beside
@@ -113,8 +114,8 @@ def _joined(pieces: list[ShaftSegment], to_first: float) -> tuple[ShaftSegment, 
     found = pieces[:1]
     for number, (before, piece) in enumerate(pairwise(pieces)):
         same = (
-            abs(before.outer_diameter_mm - piece.outer_diameter_mm) <= SAME
-            and abs(before.inner_diameter_mm - piece.inner_diameter_mm) <= SAME
+            abs(before.outer_diameter_mm - piece.outer_diameter_mm) <= SAME_mm
+            and abs(before.inner_diameter_mm - piece.inner_diameter_mm) <= SAME_mm
         )
         if same and (len(found) > 1 or number < to_first):
             length = found[-1].length_mm + piece.length_mm

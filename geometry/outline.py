@@ -12,7 +12,7 @@ from math import acos, atan2, hypot, pi
 import numpy as np
 
 Point = tuple[float, float]
-SAME = 1e-9
+SAME_mm = 1e-9
 """Points closer than this [mm] are one point."""
 ARC_RULE = np.polynomial.legendre.leggauss(24)
 """Gauss's points and weights, exact to rounding for what is swept by an arc below 180°."""
@@ -56,7 +56,7 @@ class Segment:
 
     @property
     def on_axis(self) -> bool:
-        return self.start[0] < SAME and self.end[0] < SAME
+        return self.start[0] < SAME_mm and self.end[0] < SAME_mm
 
     def at(self, t: float | np.ndarray) -> np.ndarray:
         """Point(s) (r, z) at parameter t in [0, 1], by arc length; shape (..., 2)."""
@@ -128,7 +128,7 @@ class Meridian:
         found: list[Segment] = []
         for cut in self.cuts:
             first, last = (
-                any(distance(end, p) < SAME for p in self.patch_edges)
+                any(distance(end, p) < SAME_mm for p in self.patch_edges)
                 for end in (cut.start, cut.end)
             )
             if not (first or last) or reach * (first + last) >= cut.length:
@@ -158,12 +158,12 @@ class Meridian:
     @property
     def sharp_corners(self) -> tuple[Point, ...]:
         """Corners (r, z) off the axis where the outline's tangent turns."""
-        return tuple(at for at, by in self.turns if at[0] > SAME and abs(by) >= SMOOTH_rad)
+        return tuple(at for at, by in self.turns if at[0] > SAME_mm and abs(by) >= SMOOTH_rad)
 
     @property
     def inside_corners(self) -> tuple[Point, ...]:
         """The sharp corners (r, z) that open less than 180° outside the material."""
-        return tuple(at for at, by in self.turns if at[0] > SAME and by <= -SMOOTH_rad)
+        return tuple(at for at, by in self.turns if at[0] > SAME_mm and by <= -SMOOTH_rad)
 
     @property
     def patch_edges(self) -> tuple[Point, ...]:
@@ -171,7 +171,7 @@ class Meridian:
         return tuple(
             s.start
             for i, s in enumerate(self.segments)
-            if s.patch != self.segments[i - 1].patch and s.start[0] > SAME
+            if s.patch != self.segments[i - 1].patch and s.start[0] > SAME_mm
         )
 
     def polygon(self, chord_error: float) -> np.ndarray:
@@ -191,7 +191,7 @@ def turn(before: Segment, after: Segment) -> float:
 
 def joins_smoothly(before: Segment, after: Segment) -> bool:
     """Whether `after` goes on where `before` ends, in its direction."""
-    return distance(before.end, after.start) < SAME and abs(turn(before, after)) < SMOOTH_rad
+    return distance(before.end, after.start) < SAME_mm and abs(turn(before, after)) < SMOOTH_rad
 
 
 def closed(corners: Sequence[tuple[Point, str | None]]) -> Meridian:

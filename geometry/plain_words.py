@@ -83,7 +83,7 @@ def _allowed(location: Location, kind: str | None) -> str:
 
 
 def without_tag(location: Location) -> Location:
-    """Pydantic puts the chosen kind after ``flexspline``; it is no key of the file."""
+    """Pydantic puts the chosen kind after ``flexspline``; it is not a key of the file."""
     if location[:1] == ("flexspline",) and location[1:2] in [(kind,) for kind in KINDS]:
         return (location[0], *location[2:])
     return location

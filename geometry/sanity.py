@@ -13,7 +13,7 @@ from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint, root_radius_mm
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
 
@@ -134,7 +134,7 @@ def _grip(design: Design) -> Iterator[str]:
     """A step is easily clamped by mistake, and hardly any shaft is left that twists."""
     shaft = design.shaft
     last = shaft.segment[-1].length_mm
-    if len(shaft.segment) > 1 and shaft.grip_length_mm > last + SAME:
+    if len(shaft.segment) > 1 and shaft.grip_length_mm > last + SAME_mm:
         yield (
             f"shaft.grip_length_mm = {shaft.grip_length_mm:g} is longer than the last segment, {last:g} mm: "
             f"the step is clamped too, and only {shaft.length - shaft.grip_length_mm:.4g} of "

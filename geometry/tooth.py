@@ -14,7 +14,7 @@ from typing import Literal
 
 from flexspline.geometry.basic_rack import ADDENDUM
 from flexspline.geometry.design import Design
-from flexspline.geometry.outline import SAME, Meridian, Point, Segment
+from flexspline.geometry.outline import Meridian, Point, SAME_mm, Segment
 
 CHORD_ERROR = 3e-4
 """Of the flank, in modules: it moves the equivalent thickness by less than one part in 1e4."""
@@ -74,7 +74,7 @@ class ToothCell:
         segments = []
         for i, (start, patch) in enumerate(corners):
             end = corners[(i + 1) % len(corners)][0]
-            if max(abs(end[0] - start[0]), abs(end[1] - start[1])) > SAME:
+            if max(abs(end[0] - start[0]), abs(end[1] - start[1])) > SAME_mm:
                 segments.append(Segment(start, end, patch=patch))
         return Meridian(tuple(segments))
 

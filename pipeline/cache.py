@@ -2,7 +2,7 @@
 
 fTetWild is not deterministic, so the cache is also what makes a part that it meshes give the same answer
 twice.
-An entry is one .npz (`pipeline.packing`). Damaged entries are dropped and made anew.
+An entry is one .npz (`pipeline.packing`). Damaged entries are dropped and made again.
 """
 
 from __future__ import annotations

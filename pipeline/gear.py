@@ -57,7 +57,7 @@ LAWS = (
     Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
 )
 """What no key of the design file states."""
-CARRIES = 1e-3
+CARRYING_SHARE = 1e-3
 """Of the largest force: a tooth below it is not counted as in contact."""
 
 
@@ -181,7 +181,7 @@ def curve_of(design: Design, chain: Chain, start: Equilibrium | None = None) -> 
     full = states[-1]
     model = chain.model
     teeth = model.pair_forces(full)
-    carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
+    carrying = np.abs(teeth) > CARRYING_SHARE * np.abs(teeth).max()
     return GearCurve(
         K1_Nm_per_rad=K1,
         K2_Nm_per_rad=K2,

@@ -47,7 +47,7 @@ GROOVE_SHARE = 0.3
 of it moves K by up to 0.5 %."""
 
 KEPT_BODIES = 64
-"""Condensed bodies remembered, 10 kB each: who changes the bearing need not condense the flexspline anew."""
+"""Condensed bodies remembered, 10 kB each: who changes the bearing need not condense the flexspline again."""
 LEAST_LEVER = 0.2
 """Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
 

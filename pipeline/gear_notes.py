@@ -55,7 +55,7 @@ LEAST_ANGLE = 0.1
 """arcsec: what is less is rounding of the equilibrium."""
 SAME_TORQUE = 0.01
 """A difference of less is rounding of a design file: `init` writes three digits."""
-FALLS = 0.02
+LEAST_FALL = 0.02
 """Stations along a tooth move K1 by 2 % (`gear_model`): a smaller fall is not known."""
 ACT_TOGETHER = 0.2
 """Of the play's own effect: a smaller difference of the two orders is not worth a note."""
@@ -145,7 +145,7 @@ def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
     return [
         FallingStiffness(lower, higher, 1 - K / before, preload_N)
         for (higher, before), (lower, K) in pairwise(zip(names, chords, strict=True))
-        if (1 - FALLS) * before > K
+        if (1 - LEAST_FALL) * before > K
     ]
 
 

@@ -16,7 +16,7 @@ class NoDesignError(FlexsplineError, TypeError):
             name = short(str(given))
             said = f"{name} is a name; load the design first: flexspline.load_design({name})"
         else:
-            said = f"a {type(given).__name__} is no design; flexspline.load_design reads one from a file"
+            said = f"a {type(given).__name__} is not a design; flexspline.load_design reads one from a file"
         super().__init__(f"design: {said}")
 
 

@@ -83,5 +83,5 @@ def _named(name: str) -> type:
     module, _, own = name.partition(":")
     kind = getattr(import_module(module), own) if module.startswith(PACKAGE) else None
     if not (isinstance(kind, type) and is_dataclass(kind) and _name(kind) == name):
-        raise ValueError(f"{name} is no dataclass of this package")
+        raise ValueError(f"{name} is not a dataclass of this package")
     return kind

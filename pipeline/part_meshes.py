@@ -44,7 +44,7 @@ HARDLY_FEWER = 0.9
 """Elements with longer edges over those before, from which the shape asks for them and no edge length: still
 longer edges would only make the next meshes the same. A shaft of 15 468 elements, with 1.5 and 3.4 times
 the edges alike, was solved twice on one mesh."""
-ANOTHER = 0.8
+SECOND_TRY_EDGES = 0.8
 """Edges of the second try where a sweep fails a check: elements beside a keyway may be bent too far in one
 mesh and not in the next, and fTetWild takes minutes where a sweep takes a second."""
 EDGE_POINTS = 8
@@ -240,5 +240,5 @@ class PartMeshes:
     def _swept_or_layered(self, spec: MeshSpec) -> MeshedPart | None:
         made = None
         if "swept" in self.kinds:
-            made = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
+            made = self.swept(spec) or self.swept(spec.scaled(SECOND_TRY_EDGES))
         return made or self.layered(spec)

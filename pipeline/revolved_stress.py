@@ -37,7 +37,7 @@ def ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
 
 
 def first_ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
-    """`ellipse_field` before any refinement; to be asked for before it, lest the work is done twice."""
+    """`ellipse_field` before any refinement; asked for before it, or the work is done twice."""
     return _on_ellipse(part, w0_mm, _begun(_body(part), tolerance).newest)
 
 

@@ -124,13 +124,13 @@ def twisted(
             later = kinds[kinds.index(other.kind) :] if other.kind in kinds else ()
             if not later or later == kinds:
                 raise SolidError(f"a swept mesh of the {model.name} fails a check") from None
-            model.context.progress.note(f"  {model.name}: all meshes are made anew, {other.kind}")
+            model.context.progress.note(f"  {model.name}: all meshes are made again, {other.kind}")
             kinds, first = later, replace(model.first_spec, time_limit_s=first.time_limit_s)
             meshes = PartMeshes(model, kinds, most_of_first)
         except SolidError as fault:
             if not again:
                 raise
-            model.context.progress.note(f"  {model.name}: made anew with longer edges, {fault}")
+            model.context.progress.note(f"  {model.name}: made again with longer edges, {fault}")
             again = False
             if isinstance(fault, MesherTimeError):
                 slow = Shortfall(f"{fault.reason}: the mesh has longer edges", of_the_machine=True)

@@ -46,7 +46,7 @@ PLACE_TOLERANCE = 0.02
 def solid_ellipse(flexspline: PartModel) -> SolidField:
     """The field of `ellipse` on the flexspline's quarter or half.
 
-    A swept part is meshed anew, fine where the peak of the part without its holes is; should the peak
+    A swept part is meshed again, fine where the peak of the part without its holes is; should the peak
     turn up elsewhere, there too. Any other part is solved on the mesh that gave K.
     """
     w0 = flexspline.context.design.w0_mm

@@ -30,7 +30,7 @@ from flexspline.results.renders.webp import write_webp
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 DRAWING = 10
-"""Raise when a drawing changes, so that kept pictures are drawn anew."""
+"""Raise when a drawing changes, so that kept pictures are drawn again."""
 TURNING = 3
 """The same of the 3-D views."""
 

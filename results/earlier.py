@@ -11,7 +11,7 @@ from flexspline.results.records import Record, as_json
 
 NO_FIGURES = {"pictures_missing"}
 """A key whose absence is good news."""
-NAMED = 3
+MOST_NAMED = 3
 """Figures that the note names."""
 
 
@@ -36,8 +36,8 @@ def write_result(folder: Path, record: Record) -> str | None:
         files[PREVIOUS] = (folder / RESULT).read_bytes()
     write_together(folder, files)
     if moved:
-        more = f" and {len(lacking) - NAMED} more" if len(lacking) > NAMED else ""
-        names = ", ".join(lacking[:NAMED])
+        more = f" and {len(lacking) - MOST_NAMED} more" if len(lacking) > MOST_NAMED else ""
+        names = ", ".join(lacking[:MOST_NAMED])
         return (
             f"the {RESULT} that was here has figures that this command does not compute"
             f" ({names}{more}); it is kept as {PREVIOUS}"

@@ -72,7 +72,7 @@ def _warning(warning: GearWarning) -> str:
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
-                "teeth beside the major axis touch first. This is no improvement: reduce the play"
+                "teeth beside the major axis touch first. This is not an improvement: reduce the play"
             )
         case _:
             assert_never(warning)

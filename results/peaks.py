@@ -15,7 +15,7 @@ BORDER = "at excluded border"
 """The mark, where there is room for no more."""
 MEANING = (
     "the stress still rises towards such an edge, so that the figure depends on the distance left out and "
-    "is no measure of the part's strength"
+    "is not a measure of the part's strength"
 )
 
 

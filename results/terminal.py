@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 TEXT_WIDTH = 96
 """Letters of a line of prose at most: longer ones are hard to read."""
-UNBOUNDED = 10_000
+UNBOUNDED_COLUMNS = 10_000
 """Width of what is no terminal: a file or a pipe takes rows of any length."""
 LEAST_WIDTH = 24
 """Narrower ones are not obeyed: the longest words would not fit."""
@@ -18,7 +18,7 @@ DEEPER = "    "
 
 def width() -> int:
     """Letters that a line may have."""
-    return max(shutil.get_terminal_size((UNBOUNDED, 24)).columns, LEAST_WIDTH)
+    return max(shutil.get_terminal_size((UNBOUNDED_COLUMNS, 24)).columns, LEAST_WIDTH)
 
 
 def prose(
@@ -37,5 +37,5 @@ def row(cells: Sequence[str], widths: Sequence[int] = (), indent: str = "  ") ->
         return [line]
     first, *others = cells
     deeper = indent + DEEPER
-    below = (part for cell in others for part in prose(cell, deeper, most=UNBOUNDED))
-    return [*prose(first, indent, deeper, UNBOUNDED), *below]
+    below = (part for cell in others for part in prose(cell, deeper, most=UNBOUNDED_COLUMNS))
+    return [*prose(first, indent, deeper, UNBOUNDED_COLUMNS), *below]

@@ -113,7 +113,7 @@ def test_a_page_without_its_tables_is_refused() -> None:
 
 
 def assert_as_printed(made: str) -> None:
-    """A page made anew has the printed page's words, and its figures to the last digit or 1 %."""
+    """A page made again has the printed page's words, and its figures to the last digit or 1 %."""
     figures_of = [re.findall(r"\d+(?:\.\d+)?", text) for text in (made, TEXT)]
     words_of = [re.sub(r"\d+(?:\.\d+)?", "#", text) for text in (made, TEXT)]
     assert words_of[0] == words_of[1]

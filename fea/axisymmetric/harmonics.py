@@ -33,7 +33,7 @@ from flexspline.fea.axisymmetric.space import Space, at_points, curved
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 
 DEGREE = 6
 """Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""
@@ -186,7 +186,7 @@ class HarmonicModel:
     def prescribed(self, wave: Harmonic, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
         """Mask of the free unknowns, and all unknowns with the values prescribed, else 0."""
         count = self.space.count
-        axis = np.flatnonzero(self.space.places[:, 0] < SAME)
+        axis = np.flatnonzero(self.space.places[:, 0] < SAME_mm)
         if wave.n == 1 and len(axis):
             raise HarmonicError("harmonic 1 of a body with an axis is not provided for")
         mask, value = np.zeros((count, 3), bool), np.zeros((count, 3))

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.fea.types import shortest_edge_mm
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.outline import SAME, Meridian
+from flexspline.geometry.outline import Meridian, SAME_mm
 
 
 def edge_lengths(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -83,7 +83,7 @@ class MeridianMesh:
 
     def on_axis(self) -> np.ndarray:
         """Mask (n,) of vertices on r = 0."""
-        return self.points[:, 0] < SAME
+        return self.points[:, 0] < SAME_mm
 
     @property
     def elements(self) -> int:

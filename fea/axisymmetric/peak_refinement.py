@@ -24,8 +24,8 @@ from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.outline import Meridian
 
 PEAK_BULK = 0.5
-"""Share of the estimated energy error in the triangles that are refined, beside those that LOCAL adds."""
-LOCAL = 0.5
+"""Share of the estimated energy error in the triangles refined, beside those of LOCAL_ERROR_SHARE."""
+LOCAL_ERROR_SHARE = 0.5
 """Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
 BORDER_SHARE = 0.25
 """Borders of the excluded neighbourhoods are meshed finely from this share of the peak on, or of the largest
@@ -137,7 +137,7 @@ class _MeshedField:
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         found, peak = self._found, self._peak
-        allowed = LOCAL * self._problem.tolerance * peak.mises_MPa
+        allowed = LOCAL_ERROR_SHARE * self._problem.tolerance * peak.mises_MPa
         wrong = peak.counted & (found.misfit > allowed)
         # no smaller than needed where the peak is not: those far below it may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2

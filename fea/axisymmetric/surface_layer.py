@@ -9,7 +9,7 @@ from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.twist import Twist
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.outline import SAME, Meridian
+from flexspline.geometry.outline import Meridian, SAME_mm
 
 LAYER_POINTS = 16
 """On each edge: a layer may end within it."""
@@ -61,5 +61,5 @@ def _nearest(outline: Meridian, at: np.ndarray) -> np.ndarray:
 def _check_patches(mesh: MeridianMesh, thickness: np.ndarray) -> None:
     for index, segment in enumerate(mesh.outline.segments):
         moves = np.abs(thickness[mesh.edge_segment == index])
-        if segment.patch and moves.size and moves.max() > SAME:
+        if segment.patch and moves.size and moves.max() > SAME_mm:
             raise HeldSurfaceError(segment.patch, float(moves.max()))

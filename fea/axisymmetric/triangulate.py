@@ -32,7 +32,7 @@ from flexspline.fea.axisymmetric.ruppert import (
     is_poor,
     lengths,
 )
-from flexspline.geometry.outline import SAME, Meridian, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment
 
 CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""
@@ -99,7 +99,7 @@ def _with_ends(points: np.ndarray, s: Segment) -> tuple[np.ndarray, list[int]]:
     ends = []
     for end in (s.start, s.end):
         away = np.hypot(*(points - np.array(end)).T)
-        if away.min() > SAME:
+        if away.min() > SAME_mm:
             points, away = np.vstack([points, end]), np.append(away, 0.0)
         ends.append(int(away.argmin()))
     return points, ends

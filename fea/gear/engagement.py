@@ -31,7 +31,7 @@ BENT_MODULES = pi / 4
 """Modules: half a tooth's thickness at the pitch circle."""
 THROUGH = ADDENDUM + DEDENDUM
 """Modules beyond full depth: a tooth's height."""
-OUT = 10.0
+STAND_OFF_STROKES = 10.0
 """Strokes that a tooth which is out stands off: it meets nothing any more."""
 
 
@@ -103,7 +103,7 @@ class Engagement:
         at = before.at if before else None
         while not out.all():
             off = np.zeros_like(all_in.free)
-            off[: 2 * len(out)] = OUT * stroke * np.tile(out, 2)
+            off[: 2 * len(out)] = STAND_OFF_STROKES * stroke * np.tile(out, 2)
             contacts = replace(all_in, free=all_in.free + off)
             try:
                 at = equilibrium(contacts, torque_Nm * NMM_PER_NM / 2, at)

@@ -6,7 +6,7 @@ the multiplier. So they are unique, and the gaps are g + c θ + S F + δ(F) ≥ 
 with the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope. Beside an equilibrium
 that is known the contacts of that one are tried first: Newton's method among them alone, where a force below
 0 leaves and a gap below 0 enters (Hintermüller, Ito, Kunisch, SIAM J. Optim. 13 (2002) 865-888). Where these
-do not settle, and at a torque the other way, all begins anew.
+do not settle, and at a torque the other way, all starts over.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MOST_ROUNDS = 120
 """35 random designs took up to 32 at 1330 torques, 19 in the median."""
 GEAR_STEP_SHARE = 0.99
 """Share of the way to the nearest bound that a step may go."""
-LOADED = 1e-5
+LEAST_FORCE_SHARE = 1e-5
 """Of the largest force: what is below is not in contact. Where gaps are open some 1e-8 is left."""
 MOST_CHANGES = 60
 """Newton steps among the contacts of a known state: 323 solves of 19 random gears took up to 31, 4 in the
@@ -68,7 +68,7 @@ class Equilibrium:
     @property
     def loaded(self) -> np.ndarray:
         """(k,) which places carry."""
-        return self.forces > LOADED * self.forces.max()
+        return self.forces > LEAST_FORCE_SHARE * self.forces.max()
 
 
 def equilibrium(at: Contacts, torque: float, start: Equilibrium | None = None) -> Equilibrium:
@@ -190,7 +190,7 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
 
 def _tangent(at: Contacts, forces: np.ndarray) -> tuple[float, np.ndarray]:
     """dθ/dT and dF/dT while the same places stay in contact."""
-    on = np.flatnonzero(forces > LOADED * forces.max())
+    on = np.flatnonzero(forces > LEAST_FORCE_SHARE * forces.max())
     stiff = at.compliance[np.ix_(on, on)] + np.diag(2 / 3 * at.hertz[on] * forces[on] ** (-1 / 3))
     aside = np.linalg.solve(stiff, at.turning[on])
     weight = float(at.turning[on] @ aside)

@@ -118,7 +118,7 @@ class GearModel:
         return found
 
     def with_gaps(self, mesh: Mesh, wave_generator: Plug) -> GearModel:
-        """The same bodies with another clearance, play or stroke: how they yield is not found anew."""
+        """The same bodies with another clearance, play or stroke: how they yield is not found again."""
         other = replace(self, mesh=mesh, wave_generator=wave_generator)
         other.__dict__["shares"] = self.shares
         return other

@@ -18,7 +18,7 @@ from flexspline.fea.own_assembly import NodePairs
 from flexspline.fea.solid.elements import basis_of
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 
 CHUNK_ELEMENTS = 5_000
 """Elements handled at once: it bounds the memory of the gradients at quadrature points, and they stay near
@@ -47,7 +47,7 @@ class NodeFrames:
     @classmethod
     def cylindrical(cls, nodes: np.ndarray) -> NodeFrames:
         radius = np.hypot(nodes[:, 0], nodes[:, 1])
-        on_axis = radius < SAME
+        on_axis = radius < SAME_mm
         safe = np.where(on_axis, 1.0, radius)
         c = np.where(on_axis, 1.0, nodes[:, 0] / safe)
         s = np.where(on_axis, 0.0, nodes[:, 1] / safe)

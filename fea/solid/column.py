@@ -13,7 +13,7 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
-from flexspline.geometry.outline import SAME, Meridian, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment
 from flexspline.geometry.part import Part
 
 INTERFACE = "interface"
@@ -55,7 +55,7 @@ class HoledColumn:
     @property
     def blind(self) -> bool:
         """Whether material closes the holes above."""
-        return self.depth < self.high - SAME
+        return self.depth < self.high - SAME_mm
 
     @property
     def core(self) -> float:
@@ -121,10 +121,10 @@ class HoledColumn:
         Vertices of its free wall, and the holes' end.
         """
         wall = self.inner if self.interface == self.outer else self.outer
-        inside = [s.start[1] for s in outline.segments if abs(s.start[0] - wall) < SAME]
+        inside = [s.start[1] for s in outline.segments if abs(s.start[0] - wall) < SAME_mm]
         found = [self.low]
         for z in sorted([*inside, self.depth, self.high]):
-            if found[-1] + SAME < z <= self.high:
+            if found[-1] + SAME_mm < z <= self.high:
                 found.append(z)
         return found
 
@@ -144,11 +144,11 @@ def column_of(part: Part) -> HoledColumn | None:
     if len(within) + len(beyond) < len(r) or not len(within) or not len(beyond):
         return None  # something changes over the holes, or one of them lies over the axis
     below, above = float(within.max()), float(beyond.min())
-    if below <= r.min() + SAME:
+    if below <= r.min() + SAME_mm:
         land = above - circle - hole
         inner, outer = below, circle + hole + SHARE * land
         interface = outer
-    elif above >= r.max() - SAME:
+    elif above >= r.max() - SAME_mm:
         land = circle - hole - below
         inner, outer = circle - hole - SHARE * land, above
         interface = inner
@@ -156,7 +156,7 @@ def column_of(part: Part) -> HoledColumn | None:
         return None
     across = [s for s in outline.segments if (s.start[0] - interface) * (s.end[0] - interface) < 0]
     z = sorted(s.start[1] for s in across)
-    if len(z) != 2 or any(abs(s.start[1] - s.end[1]) > SAME for s in across):
+    if len(z) != 2 or any(abs(s.start[1] - s.end[1]) > SAME_mm for s in across):
         return None
     if land < max(NARROW_OF_RADIUS * hole, NARROW_OF_HEIGHT * (z[1] - z[0])):
         return None

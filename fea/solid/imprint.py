@@ -15,7 +15,7 @@ import numpy as np
 from flexspline.fea.solid.snap import undo_inverted
 from flexspline.fea.solid.unroll import MeshingMap
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.geometry.outline import SAME, joins_smoothly
+from flexspline.geometry.outline import SAME_mm, joins_smoothly
 from flexspline.geometry.surfaces import Surface, Swept
 
 NEAR_EDGE_SHARE = 0.3
@@ -82,7 +82,7 @@ def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Mes
     whole = space.back(mesh.points)
     sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])
     beyond = edge.beyond(whole)
-    beyond[np.abs(beyond) < SAME] = 0.0
+    beyond[np.abs(beyond) < SAME_mm] = 0.0
     crossing = sides[beyond[sides].prod(axis=1) < 0]
     share = np.abs(beyond[crossing]) / np.abs(np.diff(beyond[crossing]))
     near = np.unique(crossing[share < NEAR_EDGE_SHARE])

@@ -9,7 +9,7 @@ from math import cos
 import numpy as np
 from scipy.spatial import cKDTree
 
-from flexspline.geometry.outline import SAME, Segment, SMOOTH_rad, joins_smoothly
+from flexspline.geometry.outline import SAME_mm, Segment, SMOOTH_rad, joins_smoothly
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Surface, Swept
 
 INSIDE_CORNER = 0.1
@@ -83,7 +83,7 @@ def _lies_in(segment: Segment, plane: Plane) -> bool:
     ends = ((segment.start, segment.tangent(0)), (segment.end, segment.tangent(1)))
     across = abs(plane.normal[2]) > cos(SMOOTH_rad)
     return across and any(
-        abs(at[1] - plane.point[2]) < SAME and abs(tangent[0]) > cos(SMOOTH_rad)
+        abs(at[1] - plane.point[2]) < SAME_mm and abs(tangent[0]) > cos(SMOOTH_rad)
         for at, tangent in ends
     )
 

@@ -16,7 +16,7 @@ from flexspline.fea.solid.prisms import cut
 from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import undo_inverted
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface
 
 TETS_OF_PRISM = 3
@@ -58,7 +58,7 @@ def _corners_first(
     """Corners under fillets have the least numbers, so that prisms are cut from there, not along the arc."""
     corner = np.zeros(len(polar), bool)
     for f in layers.fillets:
-        corner |= (np.abs(polar[:, 0] - f.r) < SAME) & (np.abs(polar[:, 2] - f.z) < SAME)
+        corner |= (np.abs(polar[:, 0] - f.r) < SAME_mm) & (np.abs(polar[:, 2] - f.z) < SAME_mm)
     order = np.argsort(~corner, kind="stable")
     number = np.empty_like(order)
     number[order] = np.arange(len(order))
@@ -83,13 +83,13 @@ def _sunk(
     length = np.linalg.norm(points[a] - points[b], axis=1)
     moved = polar.copy()
     for f in layers.fillets:
-        corner = inside & (r > f.r - SAME) & (r < f.far - SAME) & (np.abs(z - f.z) < SAME)
-        beyond = (r < f.r - SAME) | ((z - f.z) * f.up < -SAME)
+        corner = inside & (r > f.r - SAME_mm) & (r < f.far - SAME_mm) & (np.abs(z - f.z) < SAME_mm)
+        beyond = (r < f.r - SAME_mm) | ((z - f.z) * f.up < -SAME_mm)
         room = np.full(len(polar), np.inf)
         for one, other in ((a, b), (b, a)):
             mine = beyond[other]
             np.minimum.at(room, one[mine], length[mine])
         step = np.minimum(SUNK * f.radius, SUNK_OF_NEXT * room[corner])
-        moved[corner, 0] -= np.where(r[corner] < f.r + SAME, step, 0.0)
+        moved[corner, 0] -= np.where(r[corner] < f.r + SAME_mm, step, 0.0)
         moved[corner, 2] -= f.up * step
     return undo_inverted(points, cartesian(moved), tets)

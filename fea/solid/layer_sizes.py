@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from flexspline.fea.solid.layers import Layers
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 
 GAUSS_POINTS = 64
 """Gauss's, between radii at which a line begins or ends: square roots there leave 1e-6 of the integral."""
@@ -99,4 +99,4 @@ def _heights(layers: Layers, low: float, high: float) -> Iterator[tuple[float, f
     if layers.part.keyway is not None:
         breaks.add(layers.part.keyway.start)
     inside = sorted(z for z in breaks if low <= z <= high)
-    return ((a, b) for a, b in pairwise(inside) if b > a + SAME)
+    return ((a, b) for a, b in pairwise(inside) if b > a + SAME_mm)

@@ -15,7 +15,7 @@ import numpy as np
 from flexspline.fea.solid.fillets import Fillet, fillets_of
 from flexspline.fea.solid.plan import PlanMesh, triangulated
 from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 
@@ -81,7 +81,7 @@ class Layers:
         found = [0.0]
         whole = {f.span for f in self.fillets}
         for a, b in pairwise(_distinct(ends)):
-            arc = any(low < b - SAME and a + SAME < high for low, high in whole)
+            arc = any(low < b - SAME_mm and a + SAME_mm < high for low, high in whole)
             count = 1 if arc else ceil(LAYERS_PER_FAR * (b - a) / far)
             found += [a + (b - a) * k / count for k in range(1, count)] + [b]
         return found
@@ -98,7 +98,7 @@ class Layers:
             found += hole_arcs(self.part.bolts, sector)
         slot = self.part.keyway
         if slot is not None:
-            outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME)
+            outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME_mm)
             half, floor = slot.half_width, slot.floor
             found.append(Line((floor, 0.0), (floor, half)))
             found.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
@@ -114,7 +114,7 @@ class Layers:
         made = triangulated(self.curves(), self.sector, smallest_mm)
         if not self.solid:
             return made
-        rim = np.flatnonzero(made.points[:, 0] < self.radii[0] * (1 + SAME))
+        rim = np.flatnonzero(made.points[:, 0] < self.radii[0] + SAME_mm)
         rim = rim[np.argsort(made.points[rim, 1])]
         axis = np.full(len(rim) - 1, len(made.points))
         fan = np.column_stack([axis, rim[:-1], rim[1:]])
@@ -139,7 +139,7 @@ class Layers:
         if bolts is not None and z < self.part.hole_depth:
             for a, b in bolts.centres:
                 away = np.hypot(x - a, y - b).mean(axis=1)
-                there &= away > bolts.hole_radius + SAME
+                there &= away > bolts.hole_radius + SAME_mm
         if slot is not None and z > slot.start:
             there &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
         return there
@@ -160,12 +160,12 @@ class Layers:
             kept = plan.triangles[self.within(plan, z[j], z[j + 1])]
             low, high = number[:, j].copy(), number[:, j + 1].copy()
             for f in self.fillets:
-                if f.span[0] - SAME < z[j] < f.span[1] - SAME:
+                if f.span[0] - SAME_mm < z[j] < f.span[1] - SAME_mm:
                     on = np.flatnonzero(
-                        (plan.points[:, 0] > f.r + SAME) & (plan.points[:, 0] < f.far + SAME)
+                        (plan.points[:, 0] > f.r + SAME_mm) & (plan.points[:, 0] < f.far + SAME_mm)
                     )
                     arc, foot = (high, low) if f.up > 0 else (low, high)
-                    end = plan.points[on, 0] > f.far - SAME
+                    end = plan.points[on, 0] > f.far - SAME_mm
                     arc[on] = np.where(end, foot[on], count + np.arange(len(on)))
                     r = plan.points[on, 0]
                     nodes.append(np.column_stack([plan.points[on], f.height(r)]))
@@ -177,6 +177,6 @@ class Layers:
 def _distinct(values: set[float]) -> list[float]:
     found: list[float] = []
     for v in sorted(values):
-        if not found or v > found[-1] + SAME:
+        if not found or v > found[-1] + SAME_mm:
             found.append(v)
     return found

@@ -9,7 +9,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from flexspline.geometry.bolts import BoltCircle
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 
 SMALLEST_PIECE = 1e-6
 """Of a line's range: crossings nearer than this to each other are one."""
@@ -71,12 +71,12 @@ def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
     found: list[Curve] = []
     for x, y in bolts.centres:
         angle = float(np.arctan2(y, x)) % (2 * np.pi)
-        if angle > sector + SAME:
+        if angle > sector + SAME_mm:
             continue
         start, sweep = angle, 2 * np.pi
-        if angle < SAME:
+        if angle < SAME_mm:
             start, sweep = 0.0, np.pi
-        elif angle > sector - SAME:
+        elif angle > sector - SAME_mm:
             start, sweep = angle - np.pi, np.pi
         half = sweep / 2  # two arcs: a circle's parameter has one beginning
         for k in (0, 1):
@@ -90,13 +90,13 @@ def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:
         p, d = np.array(a.start), np.subtract(a.end, a.start)
         q, e = np.array(b.start), np.subtract(b.end, b.start)
         across = d[0] * e[1] - d[1] * e[0]
-        if abs(across) > SAME * np.hypot(*d) * np.hypot(*e):
+        if abs(across) > SAME_mm * np.hypot(*d) * np.hypot(*e):
             w = q - p
             yield p + (w[0] * e[1] - w[1] * e[0]) / across * d
     elif isinstance(a, Arc) and isinstance(b, Arc):
         between = np.subtract(b.centre, a.centre)
         away = np.hypot(*between)
-        if away > SAME:
+        if away > SAME_mm:
             along = (away**2 + a.radius**2 - b.radius**2) / (2 * away)
             yield from _both_sides(np.array(a.centre), between / away, along, a.radius)
     else:

@@ -20,7 +20,7 @@ TANGENT = 1e-3
 """Of an edge's range, over which its direction at an end is taken."""
 HALVINGS = 40
 """Of a range: what is left is rounding."""
-MERGED = 1e-9
+MERGED_DISTANCE = 1e-9
 """In the map: nearer points are one."""
 
 
@@ -147,7 +147,7 @@ class PlanEdges:
 
 def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distinct points, and which of them each is."""
-    near = cKDTree(points).query_ball_point(points, MERGED)
+    near = cKDTree(points).query_ball_point(points, MERGED_DISTANCE)
     first = np.array([min(group) for group in near])
     kept, number = np.unique(first, return_inverse=True)
     return points[kept], number

@@ -12,9 +12,9 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.solid.column import HOLE, INTERFACE, HoledColumn
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 
-FILLED = (0.6, 0.25)
+FILLED_RADII = (0.6, 0.25)
 """Rings of nodes within a hole's circle, where material closes the hole above."""
 ROTATIONS = np.array([
     [0, 1, 2, 3, 4, 5], [1, 2, 0, 4, 5, 3], [2, 0, 1, 5, 3, 4],
@@ -63,7 +63,7 @@ def extruded(
     polar = np.column_stack([np.repeat(r, k), np.repeat(phi, k), np.tile(z, n)])
     prisms = []
     for level in range(k - 1):
-        closed = z[level] > column.depth - SAME
+        closed = z[level] > column.depth - SAME_mm
         flat = np.vstack([plan.triangles, filling]) if closed else plan.triangles
         prisms.append(np.hstack([number[flat, level], number[flat, level + 1]]))
     return polar, np.vstack(prisms)
@@ -78,7 +78,7 @@ def _filled_hole(plan: MeridianMesh, column: HoledColumn) -> tuple[np.ndarray, n
     off = plan.points[rim] - centre
     rim = rim[np.argsort(np.arctan2(off[:, 1], off[:, 0]))]
     points, rings = [plan.points], [rim]
-    for share in FILLED:
+    for share in FILLED_RADII:
         rings.append(sum(map(len, points)) + np.arange(len(rim)))
         points.append(centre + share * (plan.points[rim] - centre))
     middle = sum(map(len, points))
@@ -104,13 +104,13 @@ def unrolled_copies(
     for k in range(copies):
         image = polar.copy()
         image[:, 1] = mirrored(polar[:, 1], wedge, k)
-        image[polar[:, 0] < SAME, 1] = 0.0  # on the axis all angles are one
+        image[polar[:, 0] < SAME_mm, 1] = 0.0  # on the axis all angles are one
         nodes.append(image)
         turned = [0, 1, 2, 3, 4, 5] if k % 2 == 0 else [0, 2, 1, 3, 5, 4]
         found.append(prisms[:, turned] + k * len(polar))
     stacked = np.vstack(nodes)
     _, first, number = np.unique(
-        np.round(stacked / SAME), axis=0, return_index=True, return_inverse=True
+        np.round(stacked / SAME_mm), axis=0, return_index=True, return_inverse=True
     )
     return stacked[first], number.ravel()[np.vstack(found)]
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.swept_sizing import Finer
-from flexspline.geometry.outline import SAME, Meridian, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment
 from flexspline.geometry.shaft_shape import Slot
 
 LEAST_STEPS = 2
@@ -115,12 +115,12 @@ class SlottedTube:
             steps.append(min(LARGEST_KEYED_STEP, STEP_GROWTH * steps[-1]))
         beyond = np.cumsum(steps) * left / sum(steps)
         return np.concatenate(
-            [np.arange(0, self.angle - SAME, first), [self.angle], self.angle + beyond]
+            [np.arange(0, self.angle - SAME_mm, first), [self.angle], self.angle + beyond]
         )
 
     def side(self, angles: np.ndarray) -> float:
         """Which of the mesh's angles [rad] goes onto the slot's side: the nearest, but not 0."""
-        others = angles[angles > SAME]
+        others = angles[angles > SAME_mm]
         return float(others[np.abs(others - self.angle).argmin()])
 
     def holds(self, polar: np.ndarray, side: float) -> np.ndarray:
@@ -164,15 +164,15 @@ class SlottedTube:
         lengths = [
             max(s.start[1], s.end[1]) - max(self.slot.start, min(s.start[1], s.end[1]))
             for s in on_wall
-            if abs(s.start[0] - self.outer) < SAME
+            if abs(s.start[0] - self.outer) < SAME_mm
         ]
         return self.outer * self.mouth_rad * sum(max(0.0, length) for length in lengths)
 
     def cuts(self, points: np.ndarray) -> np.ndarray:
         """Mask (n,) of points (n, 3) [mm] inside the slot."""
         x, y, z = points.T
-        inside = (x > self.slot.floor) & (np.abs(y) < self.slot.half_width - SAME)
-        return inside & (z > self.slot.start + SAME)
+        inside = (x > self.slot.floor) & (np.abs(y) < self.slot.half_width - SAME_mm)
+        return inside & (z > self.slot.start + SAME_mm)
 
     def rims(self, spacing: float) -> np.ndarray:
         """Points (k, 3) every `spacing` mm along the slot's edges, for angles from 0 on."""
@@ -199,4 +199,4 @@ def _within(s: Segment, p: tuple[float, float]) -> bool:
         return False
     near = s.nearest(np.array([p]))[0]
     ends = min(hypot(p[0] - e[0], p[1] - e[1]) for e in (s.start, s.end))
-    return bool(hypot(near[0] - p[0], near[1] - p[1]) < SAME < ends)
+    return bool(hypot(near[0] - p[0], near[1] - p[1]) < SAME_mm < ends)

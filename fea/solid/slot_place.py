@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 from flexspline.fea.solid.slot import SlottedTube
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 
@@ -42,7 +42,7 @@ def block_of(part: Part, low: float) -> SlottedTube | None:
     wanted = FADING * (corner - cut.floor + cut.half_width)
     fading = min(wanted, room)
     if (
-        cut.start < base + SAME
+        cut.start < base + SAME_mm
         or outer - corner < LEAST_RIM * (outer - cut.floor)
         or fading < LEAST_FADING * wanted
     ):

@@ -13,7 +13,7 @@ from flexspline.geometry.surfaces import Plane, Surface, sector_planes
 PROJECTION_ROUNDS = 40
 """Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the
 distance, so 40 reach rounding."""
-AGREED = 1e-8
+AGREEMENT_mm = 1e-8
 """[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
 FLATTENED_TETRAHEDRON = 0.1
 """Share of its volume: a tetrahedron that keeps less is a sliver, whose curved copy can turn inside out."""
@@ -89,7 +89,7 @@ def common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarr
         before = moved
         for surface in group:
             moved = surface.project(moved)
-        if np.abs(moved - before).max() < AGREED:
+        if np.abs(moved - before).max() < AGREEMENT_mm:
             break
     off = np.max([np.abs(s.project(moved) - moved).max(axis=1) for s in group], axis=0)
     return moved, off < SETTLED_mm

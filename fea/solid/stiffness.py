@@ -46,11 +46,11 @@ NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
 length there, so that is refined by as much as is still missing, within this range. Around them and
 far away the error falls with the fourth power of growth and length: both take the second factor."""
-LONGER = 2.0
+NEXT_TIME_RATIO = 2.0
 """Time of the next mesh and its solution over that of the last where the singular edges' step is the longest:
 it has about twice the elements; a shorter step takes so much more. fTetWild took 12 s for 14 766 elements of
 a cup, and was not done in 45 s with the shortest step."""
-AIM = 0.9
+AIMED_SHARE = 0.9
 """Share of the tolerance that the next mesh aims at: it mostly gives more, since the usual factor of a first
 mesh is a cautious one. With 0.7 and 0.95 as many of 49 random shafts met the tolerance."""
 
@@ -146,7 +146,7 @@ class _SolidTorsion:
             return made
         step = near_step(self._tolerance, self.half)
         left_s = self._deadline.limit_s - self._deadline.elapsed()
-        if LONGER * NEAR_STEP[1] / step * self._last_s >= left_s:
+        if NEXT_TIME_RATIO * NEAR_STEP[1] / step * self._last_s >= left_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._spec = _finer(self._spec, step)
         return self.mesh(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
@@ -157,7 +157,7 @@ def near_step(tolerance: float, half: float) -> float:
 
     Three digits: threads add in another order, and the rounding of `half` must not ask for another mesh.
     """
-    return round(float(np.clip(AIM * tolerance / half, *NEAR_STEP)), 3)
+    return round(float(np.clip(AIMED_SHARE * tolerance / half, *NEAR_STEP)), 3)
 
 
 def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:

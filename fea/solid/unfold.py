@@ -81,7 +81,7 @@ def unfolding(mesh: TetMesh, sector_deg: float) -> Unfolding:
     """
     times = round(sector_deg / mesh.sector_deg)
     if times < 1 or abs(times * mesh.sector_deg - sector_deg) > 1e-9 * sector_deg:  # of rounding
-        raise ValueError(f"{sector_deg} is no multiple of the sector {mesh.sector_deg}")
+        raise ValueError(f"{sector_deg} is not a multiple of the sector {mesh.sector_deg}")
     closed = sector_deg == 360 and times > 1
     if closed and times % 2:
         raise ValueError(f"copies of the sector {mesh.sector_deg} cannot be closed to 360°")

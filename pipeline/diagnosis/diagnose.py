@@ -134,7 +134,7 @@ def diagnose_measurement(
     if chain is not None:
         if not isinstance(measurement, Sweep):
             raise MeasurementError(
-                measurement.path, None, "is no torque sweep; only that is held against the gear"
+                measurement.path, None, "is not a torque sweep; only that is held against the gear"
             )
         largest = float(np.abs(measurement.history.torque_Nm).max())
         if largest > 0:

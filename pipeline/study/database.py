@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 LOCK_S = 60
 """How long to wait for another process that writes to the same SQLite file."""
 SERVER: dict[str, Any] = {"pool_pre_ping": True}
-"""A connection that the server dropped meanwhile is made anew."""
+"""A connection that the server dropped meanwhile is made again."""
 OPENINGS = 6
 """Tries, 0.5 s to 2.5 s apart: 7.5 s in all for another process to finish making the tables."""
 
@@ -48,7 +48,7 @@ def open_trial_store(
     from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
     optuna.logging.set_verbosity(optuna.logging.ERROR)
-    # an interrupt amid a query: the pool would print how closing the connection failed
+    # an interrupt during a query: the pool would print how closing the connection failed
     logging.getLogger("sqlalchemy.pool").setLevel(logging.CRITICAL + 1)
     args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else SERVER
     for attempt in range(OPENINGS):

@@ -24,7 +24,7 @@ from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.study.figures import stiffness_keys
 
-DRIFT = 0.5
+HOLE_EFFECT_DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""
 
 
@@ -113,12 +113,12 @@ def holes_of(
     design: Design,
     K_e: Callable[[Design], Stiffness],
     say: Callable[[str], None],
-    drift: float = DRIFT,
+    drift: float = HOLE_EFFECT_DRIFT,
 ) -> HolesEffect | UnknownEffect | None:
     """That of a nominal design; `K_e` is the fast model's, without the holes.
 
-    `drift`: share of the holes' effect, as `DRIFT`; 0 where the study leaves the shaft as it is. None where
-    the shaft has none.
+    `drift`: share of the holes' effect, as HOLE_EFFECT_DRIFT; 0 where the study leaves the shaft as it is.
+    None where the shaft has none.
     """
     if not pierced(design):
         return None

@@ -16,7 +16,7 @@ CONFIDENCE = 0.95
 """Usual in statistics; the intervals are told with it."""
 MOST_GROUPS = 64
 """Of sample blocks, left out in turn: a standard deviation from so many is known to 9 %."""
-PRINTED = 0.005
+HALF_DIGIT = 0.005
 """Half the last digit shown: no interval is narrower."""
 WIDEST_INTERVAL = 0.15
 """± of an index beyond which it says too little to be shown."""
@@ -72,8 +72,10 @@ def students_factor(freedom: int) -> float:
 
 
 def within(low: np.ndarray, value: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Ends (k, 2) of intervals about values, at least PRINTED to either side, none beyond [0, 1]."""
-    ends = np.column_stack([np.minimum(low, value - PRINTED), np.maximum(high, value + PRINTED)])
+    """Ends (k, 2) of intervals about values, at least HALF_DIGIT to either side, none beyond [0, 1]."""
+    ends = np.column_stack(
+        [np.minimum(low, value - HALF_DIGIT), np.maximum(high, value + HALF_DIGIT)]
+    )
     return np.clip(ends, 0, 1)
 
 

@@ -14,9 +14,9 @@ from flexspline.pipeline.study.result import StudyResult
 
 BY_CHANCE = 0.01
 """Of dimensions that move nothing, the share that a report may say something of."""
-SAME = 1e-9
+RANK_ROUNDING = 1e-9
 """Of ranks that others make up to rounding."""
-AT_END = 0.02
+END_SHARE = 0.02
 """Of a span: a best design so near its end would go on if it could."""
 FEWEST_RANKED_ROWS = 8
 """Rows from which a rank correlation says something, and beyond the dimensions a plane."""
@@ -74,7 +74,7 @@ def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
     found: list[OpenEnd] = []
     for key, (low, high) in _spans(result).items():
         ends = (OpenEnd(key, low, "lower"), OpenEnd(key, high, "upper"))
-        near = (e for e in ends if abs(best.values[key] - e.value) <= AT_END * (high - low))
+        near = (e for e in ends if abs(best.values[key] - e.value) <= END_SHARE * (high - low))
         found += [e for e in near if _may_help(result, best, key, 1 if e.value == high else -1)]
     return tuple(found)
 
@@ -85,7 +85,7 @@ def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
     better = [r for r in result.built if result.is_better(r, best)]
     return tuple(
         key for key, limit in result.study.file.constraint.items()
-        if -limit.excess(best.outcome.figures[key]) <= AT_END * limit.size
+        if -limit.excess(best.outcome.figures[key]) <= END_SHARE * limit.size
         and any(limit.excess(r.outcome.figures[key]) > 0 for r in better)
     )  # fmt: skip
 
@@ -167,7 +167,9 @@ def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
     ranks = np.column_stack([rankdata(x), rankdata(y)])
     own = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
     size = np.linalg.norm(own, axis=0)
-    if not (size > SAME * np.linalg.norm(ranks, axis=0)).all():  # the others stand for one of them
+    if not (
+        size > RANK_ROUNDING * np.linalg.norm(ranks, axis=0)
+    ).all():  # the others stand for one of them
         return True
     rho = float(own[:, 0] @ own[:, 1] / size.prod())
     chance = t.isf(BY_CHANCE / 2, free)

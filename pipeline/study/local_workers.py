@@ -44,7 +44,7 @@ class WorkerStartError(ComputationError):
 
 
 class LocalWorkers(Executor):
-    """`count` processes, each started with its first call and anew where it died.
+    """`count` processes, each started with its first call and again where it died.
 
     Leaving the context ends them at once, whatever they are at. In sessions of their own they do not see
     the Ctrl-C that a terminal sends; they end with this process too, however that ends.
@@ -88,7 +88,7 @@ class LocalWorkers(Executor):
                     good, value = False, fault
                 (future.set_result if good else future.set_exception)(value)
                 del value
-            del call, future, frame  # lest they live until the next call
+            del call, future, frame  # or they live until the next call
         worker.end()
 
 
@@ -100,7 +100,7 @@ class _Worker:
         self._closed, self._lock = False, threading.Lock()
 
     def answer(self, call: bytes) -> bytes:
-        """What the process says to a call, tried anew where the process dies of it.
+        """What the process says to a call, tried again where the process dies of it.
 
         Raises
         ------

@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 BEGINS = 0.5
 """Share of the evaluations after which every second design is a step about the best, …"""
-ALONE = 0.75
+POLISH_FROM = 0.75
 """… and after which all are."""
 FIRST_STEP = 0.12
 """Of a key's span, one standard deviation."""
 SHORTER = 0.85
-"""Per failure; with LONGER it rests at one success in five or so (Rechenberg's 1/5 rule)."""
-LONGER = 1.6
+"""Per failure; with STEP_GROWTH it rests at one success in five or so (Rechenberg's 1/5 rule)."""
+STEP_GROWTH = 1.6
 """Per success: 2.9 failures, ln 1.6 over −ln 0.85, take it back."""
 SHORTEST = 1e-4
 """Of a key's span: no drawing states a dimension finer."""
 CHANGES = 0.2
-"""How often a listed value is drawn anew instead of kept."""
+"""How often a listed value is drawn again instead of kept."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def polish_of(
     """
     rows = [t for t in past if ROW in t.user_attrs]
     share = len(rows) / evaluations
-    if share < BEGINS or (share < ALONE and len(past) % 2):
+    if share < BEGINS or (share < POLISH_FROM and len(past) % 2):
         return None
     sign = 1.0 if sense == "minimize" else -1.0
     best: FrozenTrial | None = None
@@ -67,7 +67,7 @@ def polish_of(
         better = rank < least
         best, least = (trial, rank) if better else (best, least)
         if i >= BEGINS * evaluations:
-            step = min(FIRST_STEP, step * LONGER) if better else max(SHORTEST, step * SHORTER)
+            step = min(FIRST_STEP, step * STEP_GROWTH) if better else max(SHORTEST, step * SHORTER)
     return None if best is None else Polish(best, step)
 
 
@@ -80,8 +80,8 @@ def near(polish: Polish, random: np.random.Generator) -> dict[str, Any]:
     for key, over in best.distributions.items():
         value = best.params[key]
         if isinstance(over, CategoricalDistribution):
-            anew = random.random() < CHANGES
-            found[key] = over.choices[random.integers(len(over.choices))] if anew else value
+            redrawn = random.random() < CHANGES
+            found[key] = over.choices[random.integers(len(over.choices))] if redrawn else value
             continue
         low, high = float(over.low), float(over.high)  # type: ignore[attr-defined]
         moved = value + step * (high - low) * random.standard_normal()

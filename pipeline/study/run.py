@@ -20,7 +20,13 @@ from flexspline.pipeline.study.drive import (
 )
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL_SOLVES
-from flexspline.pipeline.study.holes import DRIFT, HolesEffect, UnknownEffect, drifts, holes_of
+from flexspline.pipeline.study.holes import (
+    HOLE_EFFECT_DRIFT,
+    HolesEffect,
+    UnknownEffect,
+    drifts,
+    holes_of,
+)
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
@@ -57,7 +63,9 @@ def nominal_holes(
     """
     stored = store.notes().get(HOLES_NOTE)
     if _is_sought(stored, store):
-        found = holes_of(study.design, fast_K_e, say, DRIFT if drifts(study.keys) else 0.0)
+        found = holes_of(
+            study.design, fast_K_e, say, HOLE_EFFECT_DRIFT if drifts(study.keys) else 0.0
+        )
         stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
         if _is_sought(stored, store):
             stored = asdict(found) if found else {}

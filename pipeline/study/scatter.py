@@ -22,7 +22,7 @@ SURFACE_POINTS = 2**13
 """Of a Sobol sequence, a power of 2 as its balance needs; the surface costs nothing to evaluate."""
 LEAST_BLOCKS = 4
 """Sample blocks from which a distribution says something: eight independent designs."""
-CONSTANT = 1e-9
+CONSTANT_SHARE = 1e-9
 """Of a figure's size: a range below it is rounding."""
 
 
@@ -132,7 +132,7 @@ def scatter_of(
     independent = blocks[:, [0, -1]].ravel()
     independent = independent[np.isfinite(independent)]
     dropped = int((~solved).sum())
-    if np.ptp(values[solved]) <= CONSTANT * np.abs(values[solved]).max():
+    if np.ptp(values[solved]) <= CONSTANT_SHARE * np.abs(values[solved]).max():
         same = float(independent.mean())
         return Scatter(key, inputs, independent, independent, same, same, dropped=dropped)
 

@@ -16,7 +16,7 @@ class Slope:
     Attributes
     ----------
     held : dK/dp from the energy with the field held [N·m/rad per mm].
-    solved : dK/dp from differences of K solved anew.
+    solved : dK/dp from differences of K solved again.
     why : why one of them is None.
     solved_error : what the bounds of K and the extrapolation leave open of it.
     K_Nm_per_rad : of the part, hole-free.

@@ -1,7 +1,7 @@
 """dK/dp of every dimension of one design, found in two ways that share no mesh.
 
 First from the energy with the field held (`fea.axisymmetric.shape_slope`), from one solution. Then from
-K solved anew on either side, with two step sizes and Richardson's extrapolation. Both by the axisymmetric
+K solved again on either side, with two step sizes and Richardson's extrapolation. Both by the axisymmetric
 model: bolt holes and keyway are left out. They are of the load case "uniform"; the sum's term follows
 `solver.load_case`, at lobes by the second way alone.
 """
@@ -26,7 +26,7 @@ from flexspline.pipeline.study.slope import Slope, Slopes
 
 HELD_STEP = 1e-4
 """Of the dimension: the energy's difference is smooth, so only rounding limits the step."""
-WIDER = 10
+WIDER_STEP = 10
 """Times HELD_STEP, where the outline cannot follow so small a step."""
 SOLVED_STEP = 0.04
 """Of the dimension: K is known to half of K_TOLERANCE only, and its difference must stand above that."""
@@ -109,7 +109,10 @@ def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: f
     ------
     DesignError, ComputationError : neither side can, by a wider step either.
     """
-    for share in (HELD_STEP, WIDER * HELD_STEP):  # a new step in the outline has a least height
+    for share in (
+        HELD_STEP,
+        WIDER_STEP * HELD_STEP,
+    ):  # a new step in the outline has a least height
         h, ends = share * p, []
         for side in (h, -h):
             try:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 RESUME = "what is stored is kept: run the same command again to resume"
 DAMAGED = "the file (study.db where run.storage names none) is damaged: move it away, or choose another --out"
 GONE = (
-    "its file was deleted meanwhile, with what was stored: run the same command again to begin anew"
+    "its file was deleted meanwhile, with what was stored: run the same command again to start over"
 )
 DAMAGES = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 

@@ -104,7 +104,7 @@ def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
 def _input(design: Design, key: str, std: float, half: float | None) -> ScatteredInput:
     nominal = value_at(design, key)
     if nominal is None:
-        raise StudyError(f'tolerance."{key}"', None, "is no number of the design file")
+        raise StudyError(f'tolerance."{key}"', None, "is not a number of the design file")
     least, most = _range(design, key)
     reach = half if half is not None else CUT_SIGMAS * std
     low, high = nominal - reach, nominal + reach

@@ -64,9 +64,9 @@ SHOWS_STRUCTURE = {
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
     "record: the pause changes an effect of time, and not an effect of the number of cycles",
-    "cycle": "if the gear was clamped anew between cycles, give each clamp a name in a column unit and "
+    "cycle": "if the gear was clamped again between cycles, give each clamp a name in a column unit and "
     f"diagnose again; else {FURTHER_CYCLES}, touching nothing",
-    "unit": "measure the units again in another order, each clamped anew",
+    "unit": "measure the units again in another order, each clamped again",
 }
 """What shows structure in a channel, everything else held."""
 

@@ -62,7 +62,7 @@ def in_order(file: Path, other: Path, words: str) -> None:
     """
     if file.suffix.lower() != TOML and other.suffix.lower() == TOML:
         tell(
-            f"flexspline: {file} is no TOML file and {other} is one; the order is flexspline {words}"
+            f"flexspline: {file} is not a TOML file and {other} is one; the order is flexspline {words}"
         )
         raise typer.Exit(REFUSED)
 

@@ -9,13 +9,13 @@ from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.numbers import signed
 
-LISTED = 12
+MOST_LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""
 
 
 def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
     """Units, limits, the common gap and the mid positions."""
-    furthest = sorted(analysis.units, key=lambda u: u.p_value)[:LISTED]
+    furthest = sorted(analysis.units, key=lambda u: u.p_value)[:MOST_LISTED]
     notes = [_unit_note(u) for u in furthest]
     for u in furthest:
         if not u.within:

@@ -8,18 +8,15 @@ from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
-from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
-from flexspline.pipeline.diagnosis.measurement.torque_step import torque_step_Nm
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rounding import torque_rounding_left_arcsec
+from flexspline.pipeline.diagnosis.sweep.rounding import rounding_of_angle, rounding_of_torque
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
@@ -29,8 +26,6 @@ from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
 from flexspline.results.numbers import grouped, signed
 
-FINEST_ENCODER = 1e-5
-"""Step over the twist's span: finer ones, 29 bits a turn at 200 arcsec, are a file's last digits."""
 UNITS_APART_PCT = 1.0
 """Of their compliance, from which each unit's own is said: what clamps and bolts differ by."""
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
@@ -132,7 +127,7 @@ def record_notes(sweep: Sweep) -> list[str]:
     if copies := copied_rows(sweep):
         found.append(
             f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured anew, which makes the standard deviations too small"
+            "appended to itself? They count as measured again, which makes the standard deviations too small"
         )
     return found
 
@@ -141,8 +136,7 @@ def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> lis
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
-    found += _encoder_notes(prepared)
-    found += _torque_step_notes(explained)
+    found += _rounding_notes(explained)
     found += _noise_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
@@ -164,30 +158,23 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
     ]
 
 
-def _encoder_notes(prepared: PreparedSweep) -> list[str]:
-    """That the encoder is coarse, where its rounding is more than the readings' noise."""
-    angle, white = prepared.sweep.angle_arcsec, prepared.noise.white
-    rounding = rounding_arcsec(angle, white)
-    step = encoder_step(angle)
-    if rounding**2 < white / 2 or step < FINEST_ENCODER * (angle.max() - angle.min()):
-        return []
-    return [
-        f"the angle is read in steps of {step:.3g} arcsec: what rounding leaves, "
-        f"{rounding:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or a finer "
-        "encoder, would show less of it"
-    ]
-
-
-def _torque_step_notes(explained: ExplainedSweep) -> list[str]:
-    """That the torque is read in coarse steps, where that is more than the angle's noise."""
-    prepared = explained.prepared
-    rounding = torque_rounding_left_arcsec(prepared, explained.identified.fit)
-    if rounding**2 < prepared.noise.white / 2:
-        return []
-    return [
-        f"the torque is read in steps of {torque_step_Nm(prepared.sweep.history):.3g} N·m: what rounding "
-        f"leaves, {rounding:.2g} arcsec rms, cannot be told from an effect of the torque"
-    ]
+def _rounding_notes(explained: ExplainedSweep) -> list[str]:
+    """That a reading is coarse, where its rounding is more than the noise."""
+    found = []
+    angle = rounding_of_angle(explained.prepared)
+    if angle.is_seen:
+        found.append(
+            f"the angle is read in steps of {angle.step:.3g} arcsec: what rounding leaves, "
+            f"{angle.left_arcsec:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or "
+            "a finer encoder, would show less of it"
+        )
+    torque = rounding_of_torque(explained.prepared, explained.identified.fit)
+    if torque.is_seen:
+        found.append(
+            f"the torque is read in steps of {torque.step:.3g} N·m: what rounding leaves, "
+            f"{torque.left_arcsec:.2g} arcsec rms, cannot be told from an effect of the torque"
+        )
+    return found
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:

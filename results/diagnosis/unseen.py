@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate_on_ramps
 from flexspline.results.diagnosis.channels import channel_words
 
-BOTH_WAYS = 0.05
+LEAST_OTHER_WAY = 0.05
 """Of the rows: fewer on one side, or in one direction, are an approach or a turn."""
 WITHOUT = {
     "time_s": "friction cannot be told from rate dependence, nor drift from wear",
@@ -24,13 +24,13 @@ def unseen_notes(history: History, band_Nm: float) -> list[str]:
     """Sides, directions, rates and channels that the record lacks; `band_Nm` is the gap's crossing."""
     found = []
     torque = history.torque_Nm
-    if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < BOTH_WAYS:
+    if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < LEAST_OTHER_WAY:
         found.append(
             "torque acts one way only: the record does not show the gap, a shifted torque reading, or a "
             "stiffness that differs between directions; sweep to −T as well"
         )
     direction = direction_of_loading(history)
-    if min(np.mean(direction > 0), np.mean(direction < 0)) < BOTH_WAYS:
+    if min(np.mean(direction > 0), np.mean(direction < 0)) < LEAST_OTHER_WAY:
         found.append(
             "torque never returns: the record does not show friction; sweep back to zero as well"
         )

@@ -26,7 +26,7 @@ VERDICTS = {
 EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
-WIDER = 1.1
+WIDER_RATIO = 1.1
 """Times the width at T = 0 that a friction loop is somewhere else, where it is said."""
 
 
@@ -77,7 +77,7 @@ def magnitude_words(cause: NamedCause) -> str:
 def _is_wider(cause: NamedCause) -> bool:
     """Whether friction's loop is much wider elsewhere than at T = 0, where its magnitude is."""
     widest = cause.widest_arcsec
-    return widest is not None and widest > WIDER * abs(cause.magnitude)
+    return widest is not None and widest > WIDER_RATIO * abs(cause.magnitude)
 
 
 def title_of(cause_id: str, magnitude: float = 0.0) -> str:

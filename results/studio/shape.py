@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
-from flexspline.geometry.outline import SAME
+from flexspline.geometry.outline import SAME_mm
 from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.picture_elements import magnification
 from flexspline.results.renders.surface import FOUR_TRIANGLES
@@ -85,4 +85,4 @@ def _rim(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def _off_axis(places: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    return edges[(places[edges][:, :, 0] > SAME).any(axis=1)]
+    return edges[(places[edges][:, :, 0] > SAME_mm).any(axis=1)]

@@ -35,7 +35,7 @@ ENDED = Fault("", "the process of the fast model ended; move a slider to try aga
 class Worker:
     """One process; questions queue in the order in which they are asked.
 
-    A question amid which it was killed, as by a system without memory left, is asked once more.
+    A question during which it was killed, as by a system without memory left, is asked once more.
 
     `niceness` lowers its priority, so that a slow question does not slow the quick ones.
     """

@@ -14,7 +14,7 @@ from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
 from flexspline.pipeline.study.figures import stiffness_keys
-from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
+from flexspline.pipeline.study.holes import HOLE_EFFECT_DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
@@ -27,7 +27,7 @@ from flexspline.results.study.why import unfollowed
 PRELOAD = "preload_tooth_force_N"
 LATE_SHARE = 0.25
 """Of a search's designs, the last: what words call a quarter."""
-MOVED = STUDY_LOBE_TOLERANCE / 2
+LEAST_MOVE = STUDY_LOBE_TOLERANCE / 2
 """Of the best figure: half of what bounds of K are wide in a study."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
@@ -95,7 +95,7 @@ def unsettled(result: StudyResult) -> Iterable[str]:
         early = min((value for slot, value in found if slot < last), default=inf)
         best = min((value for _, value in found), default=inf)
         gain = (early - best) / max(abs(best), ABOVE_ZERO) if early < inf else inf
-        if best < inf and gain > MOVED:
+        if best < inf and gain > LEAST_MOVE:
             moved = "was first found" if gain == inf else f"still got {percent(gain)} better"
             yield (
                 f"the search has not settled: the best “{entry(key).name}” {moved} in the last quarter of "
@@ -188,7 +188,7 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
     if not factors:
         return
     moved = drifts(result.study.keys)
-    share = f" and by {100 * DRIFT:g} % of the correction" if moved else ""
+    share = f" and by {100 * HOLE_EFFECT_DRIFT:g} % of the correction" if moved else ""
     ends = list(dict.fromkeys(_percent(100 * (f - 1)) for f in (max(factors), min(factors))))
     yield (
         f"Holes and keyway change K_e by {' to '.join(ends)}: as much of the flange's and the keyway's own "

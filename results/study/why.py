@@ -16,7 +16,7 @@ from flexspline.pipeline.study.verified import STRESS_SHARE, Check
 from flexspline.results.numbers import signed
 from flexspline.results.study.labels import entry, valued
 
-STRONG = 0.3
+STRONG_CORRELATION = 0.3
 """Rank correlation from which an influence is worth a sentence."""
 
 
@@ -28,7 +28,7 @@ def influences(result: StudyResult) -> list[str]:
             f"{'rises' if i.correlation > 0 else 'falls'} with {entry(i.key).name} "
             f"(rank correlation {signed(i.correlation)})"
             for i in found
-            if abs(i.correlation) >= STRONG
+            if abs(i.correlation) >= STRONG_CORRELATION
         ]
         follows = ", ".join(strong) or "follows no single dimension"
         said.append(f"{entry(figure).name} {follows}.")

@@ -125,7 +125,9 @@ def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
     assert [1 / K for K in found.at_given_torque()] == pytest.approx(
         [0.0096 * (1 + error), 0.0096 * (1 + 2 * error), 0.0096], rel=1e-12
     )
-    assert 1 / found.at_given_torque(0.01).lower == pytest.approx(0.0096 * (1.01 + 2 * error), rel=1e-12)
+    assert 1 / found.at_given_torque(0.01).lower == pytest.approx(
+        0.0096 * (1.01 + 2 * error), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The text of docs/catalogue.md. To write it anew:
+"""The text of docs/catalogue.md. To write it again:
 
 python3 tests/helpers/catalogue_page.py
 """

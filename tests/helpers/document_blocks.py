@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 TOLERANCE = 0.01
-"""Relative. A part with a keyway is meshed anew each time, K then differs by up to tolerance_pct (0.5 %)
+"""Relative. A part with a keyway is meshed again each time, K then differs by up to tolerance_pct (0.5 %)
 each way, and a figure printed with three digits by up to 0.5 % more."""
 
 FENCE = re.compile(

@@ -52,7 +52,7 @@ FORMS: dict[str, tuple[str, Callable[[Setting, np.random.Generator], Hidden]]] =
 }
 """Further forms of a cause, by name; drawn only where asked for, so that old seeds keep their records."""
 DECIDABLE = 6.0
-"""Noise units, 18 nats, thrice what docs/contract.md calls ambiguous."""
+"""Noise units, 18 nats, three times what docs/contract.md calls ambiguous."""
 FOREIGN_STANDING = (12.0, 30.0, 90.0)
 """Noise units beyond the best two causes at the three levels; 10 are asked for."""
 ONE_WAY = ("softening", "leading_output", "lock_slips", "lock_yields", "stick_slip")

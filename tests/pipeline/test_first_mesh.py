@@ -117,7 +117,7 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     context = AnalysisContext(DESIGN, Cache(tmp_path), Progress(said.append))
     meshes = PartMeshes(context.part("shaft"))
     spec = meshes.model.first_spec
-    finer = meshes.swept(spec.scaled(part_meshes.ANOTHER))
+    finer = meshes.swept(spec.scaled(part_meshes.SECOND_TRY_EDGES))
     assert finer is not None
     sweep = part_meshes.swept_mesh
 

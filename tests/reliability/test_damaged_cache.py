@@ -18,7 +18,7 @@ from shell import command, environment
 
 Damage = Callable[[Path, np.random.Generator, list[Path]], None]
 SAME = 1e-9
-"""Relative: what is made anew from the same meshes, sums of threads in any order."""
+"""Relative: what is made again from the same meshes, sums of threads in any order."""
 FUTURE_S = 20 * 365 * 86400.0
 
 

@@ -64,7 +64,7 @@ def test_threads_of_a_body_of_revolution(tmp_path: Path) -> None:
 
 
 def test_rounding_asks_for_no_other_mesh() -> None:
-    """A part that fTetWild meshes in two steps was meshed anew on two threads: K moved by its bounds."""
+    """A part that fTetWild meshes in two steps was meshed again on two threads: K moved by its bounds."""
     assert near_step(0.005, 0.0081) == near_step(0.005, 0.0081 * (1 + 1e-12))
 
 

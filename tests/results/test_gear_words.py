@@ -103,7 +103,7 @@ def test_every_kind_is_tried(kind: object, tried: dict) -> None:
 
 
 def test_facts_are_kept_and_not_words(tmp_path: Path) -> None:
-    """A sentence that is reworded is said anew of a stored curve."""
+    """A sentence that is reworded is said again of a stored curve."""
     Cache(tmp_path).get("gear", {}, lambda: CURVE)
     found, _ = Cache(tmp_path).get("gear", {}, lambda: gear_curve(1.0, 1.0, 1.0))
     assert found == CURVE

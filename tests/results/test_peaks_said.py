@@ -65,7 +65,7 @@ def test_the_terminal_explains_the_mark_once() -> None:
         }
         return " ".join(table({"design": "a cup", **figures}, Path("out")).split())
 
-    assert said(border=True).count("is no measure of the part's strength") == 1
+    assert said(border=True).count("is not a measure of the part's strength") == 1
     assert "no measure" not in said(border=False)
 
 

@@ -38,7 +38,7 @@ def test_coulomb_stress_of_a_tube(record):
 def test_shear_stress_of_an_annular_plate(record):
     """Equilibrium alone: τ = T/(2π r² h), largest at the bore.
 
-    Corners are excluded to 1 mm; amid the 4 mm thick plate points of the bore itself count.
+    Corners are excluded to 1 mm; in the middle of the 4 mm thick plate points of the bore itself count.
     """
     found = torsion_stress(annular_plate(10, 20, 4), STEEL, "grip", 2.0, 1.0, 1e-3)
     exact, top = 3**0.5 * 2000 / (2 * pi * 10**2 * 4), found.peak.mises_MPa
@@ -123,7 +123,7 @@ def test_ellipse_is_linear_in_its_amplitude_and_meets_its_supports():
 
 
 def test_ellipse_bends_the_ring_by_the_ring_formula(record):
-    """Ring bending: σ ≈ E/(1-ν²)·(t/2)·3w0/R², the bending part of the hoop stress amid the ring.
+    """Ring bending: σ ≈ E/(1-ν²)·(t/2)·3w0/R², the bending part of the hoop stress in the middle of the ring.
 
     The bending part is half the difference of outer and inner surface; the membrane part comes from
     the cup's closed end. Thin-ring formula: good to t/R = 3 %.
@@ -138,7 +138,13 @@ def test_ellipse_bends_the_ring_by_the_ring_formula(record):
         hoop.append(np.interp(26.0, z[on], found.stress[on, 1]))
     expected = 206e3 / (1 - 0.3**2) * 0.55 / 2 * 3 * w0 / (19.2 + 0.55 / 2) ** 2
     bending, source = (hoop[1] - hoop[0]) / 2, "Timoshenko II §17, thin ring"
-    record("Cup on the ellipse, bending stress amid the ring", source, expected, bending, "MPa")
+    record(
+        "Cup on the ellipse, bending stress in the middle of the ring",
+        source,
+        expected,
+        bending,
+        "MPa",
+    )
     assert bending == pytest.approx(expected, rel=0.03)
 
 

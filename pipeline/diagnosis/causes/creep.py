@@ -25,13 +25,13 @@ ENDS_WITHIN = 1.0
 """Of a hold, the longest retardation time tried of twist that comes to rest; refined from 0.4 on."""
 ENDING_DIVISORS, ENDING_EXPONENT = (300.0, 30.0), 0.15
 """The shortest times and the exponent tried of such: with both ends refined a small exponent is enough."""
-ALONE = (0.15, 0.4, 1.0, 3.0)
+SINGLE_TIMES = (0.15, 0.4, 1.0, 3.0)
 """Of a hold: time constants of a single Kelvin element, less than a factor e apart."""
 LONGER_THAN_LAG = 0.3
 """Of a ramp: a shorter single element is a lag, which is `rate_dependence`."""
 STEEPEST = 0.8
 """Exponent: 1 is a steady flow, which grows like drift under constant torque."""
-ALIKE = 1.001
+LEAST_TIME_RATIO = 1.001
 """Ratio of the two retardation times below which they are one, but for rounding."""
 LEAST_LONGEST = 0.4
 """Of a hold, the longest retardation time when refined: an element that is quicker has done 92 % of its twist
@@ -91,7 +91,7 @@ class Creep(Cause):
             }
             for part in ENDING_DIVISORS
         ]
-        for share in ALONE:
+        for share in SINGLE_TIMES:
             tau = share * hold
             if tau > LONGER_THAN_LAG * ramp:
                 found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
@@ -108,7 +108,7 @@ class Creep(Cause):
     @staticmethod
     def _is_alone(shape: Shape) -> bool:
         """Whether it is one Kelvin element; much shorter than a hold that is a lag."""
-        return shape["longest_s"] < ALIKE * shape["shortest_s"]
+        return shape["longest_s"] < LEAST_TIME_RATIO * shape["shortest_s"]
 
     def possible(self, shape: Shape) -> bool:
         low, high = shape["shortest_s"], shape["longest_s"]

@@ -22,7 +22,7 @@ from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE, square_loops
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import CLEARED, less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import NOISE_LEFT, less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 FRICTION = "friction_hysteresis"
@@ -34,7 +34,7 @@ LARGEST_SHARP = 0.5
 of the other sign. A gear's friction does not; a lock that gives way does (`sweep/rig_nuisance.py`)."""
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
-ALIKE, GROWING, CLOSING = 0, 1, 2
+EVERYWHERE, GROWING, CLOSING = 0, 1, 2
 """How the loop's width goes with |T|: the same, in proportion, or only near zero within a `reach`."""
 SPREAD_ELEMENTS = 14
 """Against 4000, the first loading of the even spread is within 0.13 % of its end, of the exponential one,
@@ -95,7 +95,7 @@ class FrictionHysteresis(Cause):
 
     def shapes(self, rig: FitContext) -> list[Shape]:
         largest = rig.torque_Nm
-        deadband = max(DEADBAND * largest, CLEARED * deadband_Nm(rig.history))
+        deadband = max(DEADBAND * largest, NOISE_LEFT * deadband_Nm(rig.history))
         found: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
         least = deadband / largest
@@ -130,7 +130,7 @@ class FrictionHysteresis(Cause):
         )
 
     def but_for_a_spring(self, shape: Shape) -> list[Shape]:
-        if AHEAD in shape or shape.get("loaded", ALIKE) != ALIKE:
+        if AHEAD in shape or shape.get("loaded", EVERYWHERE) != EVERYWHERE:
             return []
         return [{**shape, "held": 1 - shape["held"]}]
 

@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.ramps import (
     shortest_lag_s,
     slowest_ramp_s,
 )
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import CLEARED, less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import NOISE_LEFT, less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 RATE = "rate_dependence"
@@ -58,10 +58,10 @@ class RateDependence(Cause):
         if ramp <= 0:
             return []
         rate = rig.torque_Nm / ramp
-        shortest = CLEARED * shortest_lag_s(rig.history)
+        shortest = NOISE_LEFT * shortest_lag_s(rig.history)
         common = {
             "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest,
-            "deadband_Nm": CLEARED * deadband_Nm(rig.history),
+            "deadband_Nm": NOISE_LEFT * deadband_Nm(rig.history),
         }  # fmt: skip
         shares = list(LAG_SHARES)
         if hold_s(rig.history) == 0:

@@ -25,9 +25,9 @@ ENVELOPE_SIGMAS = 6.0
 p-value that a verdict turns on."""
 ENVELOPE_NODES = 200
 """`explanation` chooses among the nodes: over ± 6 σ they lie at most 6π/200 = 0.09 σ apart."""
-COVERED = 0.95
+COVERED_SHARE = 0.95
 """Share of good units within the interval that is called the envelope."""
-COVERED_WORDS = f"{100 * COVERED:g} of 100"
+COVERED_WORDS = f"{100 * COVERED_SHARE:g} of 100"
 """The same, as figures say it."""
 
 
@@ -87,10 +87,10 @@ class Envelope:
 
     @property
     def interval_arcsec(self) -> tuple[float, float]:
-        """Holds COVERED of good units."""
+        """Holds COVERED_SHARE of good units."""
         if self.std_arcsec == 0:
             return self.total_arcsec, self.total_arcsec
-        tail, reach = (1 - COVERED) / 2, 12 * self.std_arcsec
+        tail, reach = (1 - COVERED_SHARE) / 2, 12 * self.std_arcsec
         ends = self.total_arcsec - reach, self.total_arcsec + reach
         low, high = (
             float(brentq(lambda x, q=q: self.above(x) - q, *ends)) for q in (1 - tail, tail)

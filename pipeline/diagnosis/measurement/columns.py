@@ -184,5 +184,5 @@ def _no_unit(head: str, name: ColumnName) -> str:
     if (name.strange or "").lower() == "grad":
         both = f"{name.quantity}_deg or {name.quantity}_gon"
         return f"column {head}: grad may be degrees or gon; write {both}"
-    why = f'"{name.strange}" is no unit of it that is known' if name.strange else "it has no unit"
+    why = f'"{name.strange}" is not a known unit of it' if name.strange else "it has no unit"
     return f"column {head}: accepted are {accepted}; {why}"

@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.number_text import (
 )
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
-SHOWN = 40
+CELL_CHARS = 40
 """Letters of a cell in a message."""
 
 
@@ -33,7 +33,7 @@ def decimal_mark(
     either = [(c, e.either) for c, e in seen if e.either is not None]
 
     def said(column: ReadColumn, row: int) -> str:
-        return f'{column.head} = "{cells[column.at][row][:SHOWN]}"'
+        return f'{column.head} = "{cells[column.at][row][:CELL_CHARS]}"'
 
     if points and commas:
         point, comma = min(points, key=lambda p: p[1]), min(commas, key=lambda p: p[1])
@@ -78,7 +78,7 @@ def _refuse_text(
             if "," in text and number_of(text, ".") is not None:
                 whole, part = text.replace(",", ""), text.replace(",", ".")
                 reason = (
-                    f'{column.head} = "{text[:SHOWN]}" is text, and may be {whole} or {part}: make the '
+                    f'{column.head} = "{text[:CELL_CHARS]}" is text, and may be {whole} or {part}: make the '
                     "cell a number"
                 )
                 raise MeasurementError(grid.path, line, reason)

@@ -26,7 +26,7 @@ BINARY = (
     (b"\x1f\x8b", "compressed; unpack it first"),
 )
 """How other files begin, and what to do with them."""
-LOOKED_AT = 4096
+SAMPLE_BYTES = 4096
 """Bytes that show whether every second one is 0."""
 SIXTEEN_BIT = 0.9
 """Share of zero bytes at odd or even places: figures and separators of UTF-16 have one each."""
@@ -66,7 +66,7 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
     for mark, codec, name in MARKS:
         if raw.startswith(mark):
             return (_strict(path, raw[len(mark) :], codec, name),)
-    begin = raw[:LOOKED_AT]
+    begin = raw[:SAMPLE_BYTES]
     for place, codec in ((1, "utf-16-le"), (0, "utf-16-be")):
         half = begin[place::2]
         if len(raw) % 2 == 0 and half and half.count(0) >= SIXTEEN_BIT * len(half):
@@ -84,7 +84,7 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
     if not found:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
         known = " or ".join(SINGLE_BYTE)
-        reason = f"byte {byte:#04x} is no text in UTF-8, {known}; save the file as UTF-8"
+        reason = f"byte {byte:#04x} is not text in UTF-8, {known}; save the file as UTF-8"
         raise MeasurementError(path, line, reason)
     return tuple(found)
 

@@ -19,7 +19,7 @@ REGULAR_SHARE = 0.8
 FEWEST_STEPS = 3.0
 """Of the encoder, from one reading to the next: of fewer, the encoder is coarse and the channel need not be
 slow."""
-GOES_ON = 0.5
+LEAST_PROGRESS = 0.5
 """Of the torque's way from one reading to the next, what it has gone while the first one stays, over what it
 would at an even pace: on a staircase it stays as the angle does."""
 
@@ -49,5 +49,5 @@ def _held(torque_Nm: np.ndarray, angle_arcsec: np.ndarray) -> np.ndarray:
         return none
     way = float(np.median(np.abs(np.diff(torque_Nm[first]))))
     within = float(np.median(np.abs(torque_Nm[first[1:] - 1] - torque_Nm[first[:-1]])))
-    goes_on = within > GOES_ON * way * (usual - 1) / usual
+    goes_on = within > LEAST_PROGRESS * way * (usual - 1) / usual
     return repeats if goes_on else none

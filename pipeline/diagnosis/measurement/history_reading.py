@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_s
 LARGEST_CYCLE = 1_000_000
 """A cycle a second for eleven days; a larger number is a slipped column."""
 
-COUNTED = 0.1
+CYCLE_SHARE = 0.1
 """Of the largest torque, five times the most that noise may be: a loop that reaches so far on both sides is a
 cycle, beside others ten times larger too."""
 
@@ -86,10 +86,10 @@ def is_frozen(time_s: np.ndarray) -> bool:
 def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:
     """Cycle number (n,) from 1, where the file has none.
 
-    A cycle ends where the torque, having been beyond `COUNTED` of its largest value on both sides, last rose
-    through 0 before going beyond it again.
+    A cycle ends where the torque, having been beyond `CYCLE_SHARE` of its largest value on both sides, last
+    rose through 0 before going beyond it again.
     """
-    limit = COUNTED * np.abs(torque_Nm).max()
+    limit = CYCLE_SHARE * np.abs(torque_Nm).max()
     far = np.flatnonzero(np.abs(torque_Nm) > limit)
     positive = torque_Nm[far] > 0
     returns = far[1:][positive[1:] & ~positive[:-1]]  # first row beyond it after a row beyond −

@@ -51,7 +51,7 @@ REFUSED_BY_CHANCE, RECORDS = 0.06, 0.98
 """Share of straight ways whose ends or middle chance lets stand out (eight ends, four of them apart); and of
 records, in which it refuses no more ways than are allowed."""
 FEWEST_ROWS_PER_NUMBER = 20
-"""A parabola about each row knows torque to 0.23 of its noise amid 41 rows; so does a polynomial then."""
+"""A parabola about each row knows torque to 0.23 of its noise within 41 rows; so does a polynomial then."""
 
 
 @dataclass(frozen=True)
@@ -206,7 +206,7 @@ def _known(
 
 
 def _bends(left: np.ndarray, told: np.ndarray, inner: slice, end_sigmas: float) -> bool:
-    """Whether what polynomials (m, k) leave (m,), in rows' deviations, is no noise, amid it or at an end."""
+    """Whether what polynomials (m, k) leave (m,), in rows' deviations, is not noise, within or at an end."""
     mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
     if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
         return True

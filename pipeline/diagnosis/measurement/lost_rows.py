@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-USUAL, LOST_STEPS = 0.95, 4.0
+USUAL_QUANTILE, LOST_STEPS = 0.95, 4.0
 """Quantile of the steps of time from one row to the next, and how many times that others are missing between
 two rows: of steps at random, which are exponential, one in 160 000 is as long."""
 LOST_SHARE = 0.5
@@ -21,7 +21,7 @@ def far_apart(t: np.ndarray, torque_Nm: np.ndarray, step: int) -> np.ndarray:
 
 def losses(t: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
     """Rows (k,) of one unit after which others are missing; of times (n,) and torques (n,)."""
-    return _after(t, torque_Nm, 1, USUAL)
+    return _after(t, torque_Nm, 1, USUAL_QUANTILE)
 
 
 def _after(t: np.ndarray, torque_Nm: np.ndarray, step: int, quantile: float) -> np.ndarray:

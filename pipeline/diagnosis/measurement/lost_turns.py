@@ -20,7 +20,7 @@ STRAIGHT_BESIDE_LOSS = 0.01
 from its top over an eighth of the cycle is 0.06."""
 
 
-BEYOND = 1.05
+LARGEST_TORQUE_RATIO = 1.05
 """Times the largest torque of its cycles that was read, which a turn does not pass."""
 MOVED_RIG_STEPS, MOVED_RIG_SIGMAS = 2.0, 3.0
 """Usual steps of torque, and deviations of what two ways say, beyond which a rig has moved between two rows:
@@ -105,6 +105,6 @@ def _further(history: History, before: np.ndarray, after: np.ndarray) -> float |
     moved = abs(later + back * until - level) > MOVED_RIG_STEPS * step + MOVED_RIG_SIGMAS * doubt
     cycles = np.isin(history.cycle, history.cycle[[before[-1], after[0]]])
     alike = cycles & (history.unit == history.unit[before[-1]])
-    most = BEYOND * float(np.abs(history.torque_Nm[alike]).max())
+    most = LARGEST_TORQUE_RATIO * float(np.abs(history.torque_Nm[alike]).max())
     turned = 0 < at < until and abs(level + slope * at) < most
     return float(slope * at) if moved and turned else None

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
-from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN
+from flexspline.pipeline.diagnosis.measurement.decimal_mark import CELL_CHARS
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.time_form import (
@@ -40,11 +40,11 @@ def seconds_from(grid: CellGrid, column: ReadColumn, texts: list[str]) -> np.nda
     MeasurementError : a text that is no stamp, or one that two readings fit.
     """
     if is_slashed(texts[0]):
-        said = f'{column.head} = "{texts[0][:SHOWN]}"'
+        said = f'{column.head} = "{texts[0][:CELL_CHARS]}"'
         reason = f"{said} may begin with the day or the month; write 2024-12-31 12:30:00"
         raise MeasurementError(grid.path, grid.line[0], reason)
     if is_day(texts[0]):
-        said = f'{column.head} = "{texts[0][:SHOWN]}"'
+        said = f'{column.head} = "{texts[0][:CELL_CHARS]}"'
         reason = f"{said} is a day without a time of day; write both in one column, or time_s"
         raise MeasurementError(grid.path, grid.line[0], reason)
     form = form_said(f"{column.head} {grid.unit_row[column.at] if grid.unit_row else ''}")
@@ -53,9 +53,9 @@ def seconds_from(grid: CellGrid, column: ReadColumn, texts: list[str]) -> np.nda
     in_minutes = is_short(texts[0]) and _in_minutes(grid, column, texts, form)
     found, bad = seconds_of(texts, in_minutes)
     if bad is not None:
-        other = f'is no date and time as "{texts[0][:SHOWN]}" is'
+        other = f'is not a date and time as "{texts[0][:CELL_CHARS]}" is'
         why = OUT_OF_RANGE if _shape(texts[bad]) == _shape(texts[0]) else other
-        reason = f'{column.head} = "{texts[bad][:SHOWN]}" {why}'
+        reason = f'{column.head} = "{texts[bad][:CELL_CHARS]}" {why}'
         raise MeasurementError(grid.path, grid.line[bad], reason)
     return np.array(found)
 
@@ -75,8 +75,8 @@ def _refuse_other_form(
     ):
         count = "two" if short else "three"
         reason = (
-            f'{column.head} = "{first[:SHOWN]}" has {count} numbers, not {form.numbers} as its head says:'
-            f" correct the head, or write {form.numbers}"
+            f'{column.head} = "{first[:CELL_CHARS]}" has {count} numbers, not {form.numbers} as its'
+            f" head says: correct the head, or write {form.numbers}"
         )
         raise MeasurementError(grid.path, grid.line[0], reason)
     if not form.parts_digits:
@@ -86,7 +86,7 @@ def _refuse_other_form(
         if part is not None and len(part[1]) < form.parts_digits:
             full = form.parts_digits
             reason = (
-                f'{column.head} = "{text[:SHOWN]}": its parts of a second may be {part[1]:0>{full}} or'
+                f'{column.head} = "{text[:CELL_CHARS]}": its parts of a second may be {part[1]:0>{full}} or'
                 f" {part[1]:0<{full}}; write all {full} digits"
             )
             raise MeasurementError(grid.path, line, reason)

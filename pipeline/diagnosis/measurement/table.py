@@ -14,7 +14,7 @@ from flexspline.geometry.load import read_toml
 from flexspline.geometry.ranges import SMALLEST_NUMBER, TEMPERATURE_C, Range
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
-from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
+from flexspline.pipeline.diagnosis.measurement.decimal_mark import CELL_CHARS, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
 from flexspline.pipeline.diagnosis.measurement.number_text import DecimalMark, numbers_of
@@ -141,7 +141,7 @@ def _refuse_unnamed(grid: CellGrid, across: Sequence[Sequence[str]]) -> None:
         for line, text in zip(grid.line, cells, strict=True):
             if _holds(text.strip()):
                 reason = (
-                    f'"{text.strip()[:SHOWN]}" stands in a column without a name; with decimal commas, '
+                    f'"{text.strip()[:CELL_CHARS]}" stands in a column without a name; with decimal commas, '
                     "separate the columns by semicolons"
                 )
                 raise MeasurementError(grid.path, line, reason)
@@ -167,7 +167,7 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: DecimalM
     values, bad = numbers_of(texts, mark)
     if bad is not None:
         text = texts[bad]
-        what = "is empty" if not text else f'= "{text[:SHOWN]}" is not a finite number'
+        what = "is empty" if not text else f'= "{text[:CELL_CHARS]}" is not a finite number'
         many = sum(not _holds(t) for t in texts)
         if not _holds(text) and many > 1:
             way = "take the column out" if column.name in OPTIONAL else "leave these rows out"

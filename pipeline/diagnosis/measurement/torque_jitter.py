@@ -19,10 +19,10 @@ from flexspline.pipeline.diagnosis.robust import rms
 FAR_SIGMAS = 4.0
 """Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
 USUAL_ROWS, WIDEST_ROWS = 7, 20
-"""Rows on either side: torque amid 15 is known to 0.39 of its noise, its rate to 0.06 a row; amid 41 to
+"""Rows on either side: torque within 15 is known to 0.39 of its noise, its rate to 0.06 a row; of 41 to
 0.23."""
-CLEARED = 0.25
-"""Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
+NOISE_LEFT = 0.25
+"""Share of the noise that is left where it is taken off: 0.39 within a way, 0.26 in the mean of 15 rows."""
 CYCLE_PART = 40
 """Of a cycle, on either side: of a sine a parabola there leaves (2π/40)⁴/24 of its height at most, 3e-5."""
 PARABOLA_MIDDLE = 1.5

@@ -17,7 +17,7 @@ FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
 STEP_SHARE = 0.01
 """Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
-UNLIKE, LEAST_OF_TYPICAL = 2.0, 0.05
+UNLIKE_RATIO, LEAST_OF_TYPICAL = 2.0, 0.05
 """Times the typical noise from which cycles have their own: by chance one of 24 rows has 1.5 times as much;
 and of the typical one at least: a way of few rows is not known better."""
 LEVELS_APART, LEVEL_WIDTH, FEWEST_OF_LEVEL = 10.0, 0.3, 3
@@ -68,7 +68,7 @@ def _usual(history: History) -> np.ndarray:
 
 
 def _torque_noise_Nm(history: History) -> np.ndarray:
-    """(n,) the typical unit's; each cycle's own where one has UNLIKE times as much."""
+    """(n,) the typical unit's; each cycle's own where one has UNLIKE_RATIO times as much."""
     none = np.zeros(len(history))
     if history.exact:
         return none
@@ -92,7 +92,7 @@ def _torque_noise_Nm(history: History) -> np.ndarray:
     each = [
         typical if noise is None else max(noise, LEAST_OF_TYPICAL * typical) for noise in of(cycles)
     ]
-    if max(each) < UNLIKE * typical:
+    if max(each) < UNLIKE_RATIO * typical:
         each = [typical] * len(each)
     found = none
     for rows, noise in zip(cycles, each, strict=True):

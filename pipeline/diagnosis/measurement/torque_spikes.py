@@ -17,26 +17,26 @@ SPIKE_SIGMAS, SPIKE_SHARE, SPIKE_STEPS = 10.0, 0.05, 4.0
 about it, as a share of the largest torque, and in steps between the rows beside it."""
 LARGEST_QUANTILE = 0.95
 """Of torques without sign, taken for the largest: spikes in up to a twentieth of the rows do not count."""
-FOLLOWS = 0.25
+LEAST_TWIST_SHARE = 0.25
 """Of the twist that such a torque would make."""
-BESIDE = 3
+ROWS_BESIDE = 3
 """Rows on either side that are asked."""
-LATE = 2
+ROWS_LATE = 2
 """Rows by which two channels of a logger may be apart."""
 
 
 def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """(n,) torques, one or two in a row, that stand out and that the angle does not follow: a gear would."""
-    if len(torque) <= 2 * BESIDE:
+    if len(torque) <= 2 * ROWS_BESIDE:
         return np.zeros(len(torque), bool)
     off, moved = (values - _median_about(values) for values in (torque, angle))
     sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
     largest = np.quantile(np.abs(torque), LARGEST_QUANTILE)
     far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
-    least_moved = FOLLOWS * _softness(torque, angle) * np.abs(off)
+    least_moved = LEAST_TWIST_SHARE * _softness(torque, angle) * np.abs(off)
     spikes = far & (_largest_about(np.abs(moved)) < least_moved)
     for a, b in runs(spikes):
-        sides = torque[max(0, a - BESIDE) : a], torque[b : b + BESIDE]
+        sides = torque[max(0, a - ROWS_BESIDE) : a], torque[b : b + ROWS_BESIDE]
         step = max((np.abs(np.diff(side)).max(initial=0.0) for side in sides), default=0.0)
         alone = b - a <= LONGEST_OUTLIER
         spikes[a:b] = alone and np.abs(off[a:b]).min() > SPIKE_STEPS * step
@@ -53,9 +53,11 @@ def _softness(torque: np.ndarray, angle: np.ndarray) -> float:
 
 
 def _largest_about(values: np.ndarray) -> np.ndarray:
-    """(n,) largest of each row and `LATE` on either side."""
-    padded = np.pad(values, LATE, mode="edge")
-    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * LATE + 1).max(axis=1))
+    """(n,) largest of each row and `ROWS_LATE` on either side."""
+    padded = np.pad(values, ROWS_LATE, mode="edge")
+    return np.asarray(
+        np.lib.stride_tricks.sliding_window_view(padded, 2 * ROWS_LATE + 1).max(axis=1)
+    )
 
 
 def _median_about(values: np.ndarray) -> np.ndarray:

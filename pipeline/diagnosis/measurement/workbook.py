@@ -58,7 +58,7 @@ def first_sheet(path: Path, raw: bytes) -> list[tuple[int, list[str]]]:
     except MeasurementError:
         raise
     except DAMAGE as error:
-        reason = f"is no readable .xlsx workbook ({str(error) or type(error).__name__})"
+        reason = f"is not a readable .xlsx workbook ({str(error) or type(error).__name__})"
         raise MeasurementError(path, None, reason) from None
 
 

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
 from flexspline.pipeline.diagnosis.measurement.torque_spikes import torque_spikes
 
-FAR = 3.0
+FAR_RATIO = 3.0
 """Times as far from the median as every other reading: a programme goes to its largest torque by steps, and a
 gear by its slope. Only what stands alone or repeats itself is asked, and only against another channel."""
 LEAP_K = 50.0
@@ -123,14 +123,14 @@ def _wrong_in_unit(values: np.ndarray, judge: Judge) -> np.ndarray:
 
 
 def _far(values: np.ndarray, kept: np.ndarray) -> Iterator[np.ndarray]:
-    """Masks (n,) of rows `FAR` times as far from the median as all others: fewest first, half at most."""
+    """Masks (n,) of rows FAR_RATIO times as far from the median as others: fewest first, half at most."""
     rows = np.flatnonzero(kept)
     if not len(rows):
         return
     off = np.abs(values[rows] - np.median(values[rows]))
     order = np.argsort(off)
     out = off[order]
-    for i in np.flatnonzero(out[1:] > FAR * out[:-1])[::-1] + 1:
+    for i in np.flatnonzero(out[1:] > FAR_RATIO * out[:-1])[::-1] + 1:
         if 2 * i < len(rows):
             return
         far = np.zeros(len(values), bool)

@@ -178,7 +178,7 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
     name = table["id"]
     cause = known_causes().get(name)
     if cause is None:
-        raise refuse(f'"{name}" is no known cause; known are {", ".join(known_causes())}')
+        raise refuse(f'"{name}" is not a known cause; known are {", ".join(known_causes())}')
     found = []
     for element in tables(table["element"], "cause.element", refuse):
         check(element, ELEMENT, {}, f"element of {name}", refuse)

@@ -62,7 +62,7 @@ def check(
     known = needed | optional
     for key, value in table.items():
         if key not in known:
-            raise refuse(f"{key} is no key of {where}; it takes {', '.join(known)}")
+            raise refuse(f"{key} is not a key of {where}; it takes {', '.join(known)}")
         wanted = known[key]
         right = isinstance(value, wanted) and (bool in wanted or not isinstance(value, bool))
         if not right:

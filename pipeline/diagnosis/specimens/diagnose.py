@@ -39,7 +39,7 @@ FEWEST_SPECIMENS = 3
 """One for the modulus, one for a cause, one to see noise."""
 FEWEST_HELD_OUT = 4
 """The rest then still has FEWEST_SPECIMENS specimens."""
-PLAINLY = 0.25
+FAR_OFF_LOG_K = 0.25
 """A file that does not say its part is the series' where the flexspline alone is this far off in ln K and
 the series less than half as far."""
 
@@ -141,7 +141,7 @@ def _parts(
         C = [sum(bench.compliance(d, p) for p in PARTS[choice]) for d in designs]
         off[choice] = float(abs(np.median(np.log(specimens.stiffness_Nm_per_rad * np.array(C)))))
     part = choices[0] if len(owners) == 1 else min(off, key=lambda c: off[c])
-    if part != "series" and off[part] > PLAINLY and off["series"] < off[part] / 2:
+    if part != "series" and off[part] > FAR_OFF_LOG_K and off["series"] < off[part] / 2:
         part = "series"
     by_keys = len(owners) == 1 and part in owners
     return (part,) * len(designs), "overridden_keys" if by_keys else "stiffness"

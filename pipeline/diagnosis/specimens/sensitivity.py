@@ -22,11 +22,11 @@ SMALLEST_STEP = 0.05
 """Of a dimension: a tolerance can be so small a share of it that K's change would be the mesh's."""
 LARGEST_DIMENSION_STEP = 0.3
 """Of a dimension: a tolerance can be more than all of it, of a fillet say; a third less is still a part."""
-LOOKED_AT = 5.0
+MOST_TOLERANCES = 5.0
 """General tolerances: nine of ten wrong dimensions are nearer by their prior, `WRONG_TOLERANCES`."""
-FEELS = 0.02
-"""A dimension matters where LOOKED_AT tolerances change some specimen's compliance by this share: twice the
-usual noise of one stiffness (`evidence.USUAL_NOISE`)."""
+LEAST_CHANGE = 0.02
+"""A dimension matters where MOST_TOLERANCES tolerances change some specimen's compliance by this share: twice
+the usual noise of one stiffness (`evidence.USUAL_NOISE`)."""
 MOST_SOLVED = 24
 """Specimens whose sensitivities are solved; of more, the others' follow by a plane over the logarithms of
 their dimensions, which leaves some percent of a slope."""
@@ -83,7 +83,10 @@ def sensitivities(
             bench.context.progress.note(f"sensitivity to {key}")
         known: dict[str, tuple[float, float]] = {}
         first = _log_slope(bench, mine[0], part, key, each[0][key], tolerance)
-        if keys is None and abs(first[0]) * LOOKED_AT * tolerance / each[0][key] < FEELS / 2:
+        if (
+            keys is None
+            and abs(first[0]) * MOST_TOLERANCES * tolerance / each[0][key] < LEAST_CHANGE / 2
+        ):
             continue  # a first look, so that a fillet does not cost two solves a specimen
         rows = np.flatnonzero(has)
         solved = rows[np.unique(np.linspace(0, len(rows) - 1, MOST_SOLVED).round().astype(int))]
@@ -101,10 +104,10 @@ def sensitivities(
                 values[rows] = plane @ np.linalg.lstsq(plane[at], values[solved], rcond=1e-6)[0]
         s = Sensitivity(key, part, nominal, tolerance, slope, curvature)
         change = max(
-            np.abs(s.log_change(LOOKED_AT * tolerance)).max(),
+            np.abs(s.log_change(MOST_TOLERANCES * tolerance)).max(),
             np.abs(s.log_change(-tolerance)).max(),
         )
-        if keys is not None or change > FEELS:
+        if keys is not None or change > LEAST_CHANGE:
             found.append(s)
     return found
 

@@ -120,7 +120,7 @@ def _unnamed_nats(found: ExplainedSweep) -> float:
 def _raced_with(
     plain: PreparedSweep, element: Element, offset: float
 ) -> tuple[ExplainedSweep, float]:
-    """The race with friction, and the friction found anew from it; with the deviation of its torque."""
+    """The race with friction, and the friction found again from it; with the deviation of its torque."""
     guess = element
     element = _alone(prepare(plain.sweep, plain.prediction, offset, guess)).element
     if abs(float(np.log(element.amplitudes[0] / guess.amplitudes[0]))) > GUESS_LOG:

@@ -1,7 +1,7 @@
 """Friction ahead of the teeth, refined by Gauss-Newton steps of its torque and its stiffness ratio.
 
 Both are nonlinear: they change what every other term sees. At each step the terms of a set, and the
-calibration, are evaluated and fitted anew.
+calibration, are evaluated and fitted again.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class _Trial:
         """Whitened columns (r, b + k), their prior's precision, and the whitened target (r,)."""
         p, sweep = self.prepared, self.prepared.sweep
         teeth = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
-        # found anew from each friction, the noise would take most of the time
+        # found again from each friction, the noise would take most of the time
         history = behind(self.true, self.true.torque_Nm - teeth.torque_Nm)
         rig = FitContext(p.prediction, history)
         base, prior = base_columns(rig, self.evidence.columns.base[:, -NOISE_COLUMNS:])

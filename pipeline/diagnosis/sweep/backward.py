@@ -43,7 +43,7 @@ WITHIN_LOADS = (
 WOULD_SHOW = ("temperature_C", "input_angle_deg")
 """Channels that would show what else may give such loops: a gap that shrinks as the gear warms, a wave
 generator that turns with the load."""
-FOLLOWS = 0.2
+RATE_SHARE = 0.2
 """Share of the slowest loads' width that goes with the rate, up to which loops do not grow: all of a late
 reading's does."""
 
@@ -89,7 +89,7 @@ def _grow(loads: Loads, angle_arcsec: np.ndarray) -> bool | None:
         return None
     slope, at_rest = np.polyfit(loads.rates, loads.widths(angle_arcsec), 1)
     with_rate = slope * loads.rates.min()
-    return bool(with_rate / (at_rest + with_rate) > FOLLOWS)
+    return bool(with_rate / (at_rest + with_rate) > RATE_SHARE)
 
 
 def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:

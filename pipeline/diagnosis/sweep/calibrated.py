@@ -10,14 +10,14 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, DesignMatrix, base_columns
 
-ALLOWED = 2.0
+ALLOWED_SIGMAS = 2.0
 """Standard deviations by which a calibration may move without being a finding."""
 
 
 def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     """(n,) measured less the simulation alone, calibrated on the race's rows as far as its doubt goes.
 
-    Stiffness and gap, common and each unit's own, move by no more than `ALLOWED` of their stated
+    Stiffness and gap, common and each unit's own, move by no more than `ALLOWED_SIGMAS` of their stated
     standard deviations, and the best within those limits is taken; zeros are free.
     """
     from scipy.optimize import lsq_linear
@@ -29,7 +29,7 @@ def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     units = len(history.unit_slices)
     limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
     limit = np.full(len(evidence.base_right), np.inf)
-    limit[limited] = ALLOWED * evidence.columns.base_prior[limited]
+    limit[limited] = ALLOWED_SIGMAS * evidence.columns.base_prior[limited]
     # the fit's normal equations G x = b as least squares: G = L Lᵀ, so |Lᵀx − L⁻¹b|² is its misfit
     lower = np.linalg.cholesky(evidence.base_gram)
     mean = lsq_linear(lower.T, np.linalg.solve(lower, evidence.base_right), (-limit, limit)).x

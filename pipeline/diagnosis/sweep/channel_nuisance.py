@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 TIME_STEPS = 25
 """Places of a step in time, evenly over a unit's rows."""
-TELLING = 7
+MOST_AMBIGUOUS_POSITIONS = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 WAVES = range(3, 61)
 """Half periods over the time of the record."""
@@ -138,7 +138,7 @@ def zeros_apart(rig: FitContext) -> Made:
 def _telling(rig: FitContext) -> bool:
     """Whether zeros of the record's positions may be something else than the harmonics 1, 2 and 4."""
     angle = rig.history.input_angle_deg
-    return angle is not None and len(np.unique(np.mod(angle, 360.0))) > TELLING
+    return angle is not None and len(np.unique(np.mod(angle, 360.0))) > MOST_AMBIGUOUS_POSITIONS
 
 
 def over_position(rig: FitContext) -> Made:
@@ -166,7 +166,7 @@ def over_turns(rig: FitContext) -> Made:
         return
     if np.ptp(angle) <= 360.0:
         angle = np.unwrap(angle, period=360.0)
-    if len(np.unique(angle)) <= TELLING:
+    if len(np.unique(angle)) <= MOST_AMBIGUOUS_POSITIONS:
         return
     turned = 2 * (angle - angle.min()) / np.ptp(angle) - 1
     for degree in range(1, TURNS_DEGREE + 1):

@@ -26,7 +26,7 @@ POWERS = (0.35, 1.0)
 """Of the speed, from and to: greases thin with speed by powers of a half and more (Carreau's law)."""
 TIMES = (0.01, 0.5)
 """Of a ramp, from and to: how long the lag would take to build up at its first rate."""
-TRIED, ZOOMS = (6, 9), 3
+TRIED_NUMBERS, ZOOMS = (6, 9), 3
 """Powers and times tried at once, evenly and by equal factors; and how often about the best of them, a third
 as far apart each time."""
 NEWTON_STEPS = 4
@@ -43,7 +43,10 @@ def dashpot_explains(identified: Identification) -> bool:
     if lag is None or old.ahead is not None or ramp_s(history) == 0:
         return False
     others = [i for i in best.terms if i not in loops]
-    powers, times = np.linspace(*POWERS, TRIED[0]), np.geomspace(*TIMES, TRIED[1])
+    powers, times = (
+        np.linspace(*POWERS, TRIED_NUMBERS[0]),
+        np.geomspace(*TIMES, TRIED_NUMBERS[1]),
+    )
     apart, factor = powers[1] - powers[0], times[1] / times[0]
     for _ in range(1 + ZOOMS):
         scores = _scores(identified, others, lag, powers, times)

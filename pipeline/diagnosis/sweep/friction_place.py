@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 SLOPE_SHARE = 1e-3
 """Of the largest torque, to either side, for the wind-up's slope: a hundredth of its narrowest knee."""
-BOTH_SIDES = 0.15
+LEAST_OTHER_SIDE = 0.15
 """Torque is on both sides of zero where the smaller side has more than this share of the larger: a loop
 closes within some percent of its turn, and noise is less."""
 EVEN_ODDS = 0.5
@@ -53,7 +53,7 @@ def width_share_std(fit: SweepFit) -> float:
     """
     torque = fit.rig.history.torque_Nm[fit.evidence.kept]
     least, most = sorted([max(0.0, float(torque.max())), max(0.0, -float(torque.min()))])
-    if not _place_open(fit) or least > BOTH_SIDES * most:
+    if not _place_open(fit) or least > LEAST_OTHER_SIDE * most:
         return 0.0
     return EVEN_ODDS**0.5 * abs(fit.magnitudes()[HARDENING] - 1)
 

@@ -109,9 +109,9 @@ def _times_worse(gain: Gain) -> float:
 
 
 def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> Gain | None:
-    """Fit the named causes anew on the rest of the record, and predict what was held out.
+    """Fit the named causes again on the rest of the record, and predict what was held out.
 
-    The shapes are searched and tuned anew as well, on the training rows alone. Rows in the gap's crossing are
+    The shapes are searched and tuned again too, on the training rows alone. Rows in the gap's crossing are
     judged no more than they are fitted: their side of the gap is not known. With friction ahead of the teeth
     the simulation has its crossing elsewhere, and is not judged there either.
     """

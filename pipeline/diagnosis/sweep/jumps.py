@@ -44,7 +44,7 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     An output that sticks falls behind the torque little by little and comes after at once: its residual
     creeps against the motion and jumps with it, so its steps f along the motion, less their mean, are skew.
     Those of noise of any colour, and of a smooth misfit, go either way alike: Σ(f³ − 3σ²f), of which the part
-    in f is nought, has the mean 0 and the deviation √Σ(f³ − 3σ²f)². The saw-tooth passes for
+    in f is zero, has the mean 0 and the deviation √Σ(f³ − 3σ²f)². The saw-tooth passes for
     coloured noise: its rms is that of the residual less the white part, or, where jumps from row to row have
     passed for white noise as well, that of all the residual. An encoder's own saw-tooth has
     an rms of 1/√12 of its step: what is below a whole step is none, unless noise dithers the readings.

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
 )
 from flexspline.pipeline.diagnosis.sweep.rounding import (
     rounding_left_arcsec,
-    torque_rounding_left_arcsec,
+    rounding_of_torque,
 )
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
@@ -49,7 +49,7 @@ def left_over(explained: ExplainedSweep) -> LeftOver:
     tests = [t for t in channel_tests(prepared, fit) if t.rms_arcsec > rounding]
     jumps = largest(*(test(prepared, fit) for test in (jumps_of, stuck_of, scatter_along_travel)))
     # the encoder's step is known to each of these tests
-    if jumps is not None and jumps.rms_arcsec < torque_rounding_left_arcsec(prepared, fit):
+    if jumps is not None and jumps.rms_arcsec < rounding_of_torque(prepared, fit).left_arcsec:
         jumps = None
     return LeftOver(tuple(tests), jumps, repeated_misfit(prepared, fit), rounding)
 

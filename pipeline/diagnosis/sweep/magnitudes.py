@@ -28,7 +28,7 @@ FEWEST_WEIGHT_LOGS = 6.0
 NEAR_ZERO = 0.15
 """Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
 MOST_SHAPES = 24
-"""Of these sets at most, the likeliest: each is fitted anew for its deviation."""
+"""Of these sets at most, the likeliest: each is fitted again for its deviation."""
 
 
 def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:

@@ -66,7 +66,7 @@ def offset_of(explained: ExplainedSweep) -> float:
 
 
 def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep, ...]:
-    """The first race with an offset taken off, and the last with it found anew; none where it vanishes."""
+    """The first race with an offset taken off, and the last with it found again; none where it vanishes."""
     found: list[ExplainedSweep] = []
     for _ in range(OFFSET_ROUNDS):
         try:

@@ -47,11 +47,11 @@ TUNINGS, TUNED_KINDS = 3, 3
 TUNED_LAWS = 2
 """Sets of the same causes by other laws that are tuned beside the best one."""
 NOISE_ROUNDS = 4
-"""At most; records in which noise is found anew more than once are few."""
+"""At most; records in which noise is found again more than once are few."""
 NOISE_ALIKE = 0.2
 """Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
 NOISE_FALLEN = 1.1
-"""Of the log of its variance, by which it must fall, once a best set has left it, to be found anew: a factor
+"""Of the log of its variance, by which it must fall, once a best set has left it, to be found again: a factor
 of three. What falls by less is the shapes' misfit, up to 1.4 times the noise; more terms would fit it."""
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
@@ -103,7 +103,7 @@ class ExplainedSweep:
 
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
-    """Race, with the noise estimated anew from what the best set leaves, and shapes tuned.
+    """Race, with the noise estimated again from what the best set leaves, and shapes tuned.
 
     Once more without rate dependence, where beside friction it follows no rate.
     """

@@ -22,7 +22,7 @@ YIELDS = (0.4, 0.55, 0.7, 0.85)
 """Of the largest torque: where a lock gives way. Lower, the gear's own friction does the same."""
 MOST_LOADS = 40
 """Loads with a way of their own each; where there are more, all follow one law."""
-DAMPED = ((0.05, 1.12), (0.12, 1.3))
+DAMPING_AND_PERIOD_RATIOS = ((0.05, 1.12), (0.12, 1.3))
 """Damping ratio, and ratio of neighbouring periods: a ring of damping ζ lasts 1/(2πζ) periods, within which
 neighbours so near drift apart by less than a sixth of a turn."""
 FEWEST_PERIOD_ROWS = 3.0
@@ -130,7 +130,7 @@ def ringing(rig: FitContext) -> Made:
     )
     shortest = FEWEST_PERIOD_ROWS * max(spacing, LEAST_TIME_S)
     longest = max(LONGEST_PERIOD * ramp, LONGEST_HELD_PERIOD * hold_s(history))
-    for damping, ratio in DAMPED:
+    for damping, ratio in DAMPING_AND_PERIOD_RATIOS:
         if longest <= shortest:
             break
         count = int(np.log(longest / shortest) / np.log(ratio)) + 1

@@ -2,23 +2,62 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import hypot, sqrt
 
-from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec, undithered
+from flexspline.pipeline.diagnosis.measurement.encoder_step import (
+    encoder_step,
+    rounding_arcsec,
+    undithered,
+)
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.measurement.torque_step import torque_step_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
+FINEST_ENCODER = 1e-5
+"""Step over the twist's span: finer ones, 29 bits a turn at 200 arcsec, are a file's last digits."""
+NOISE_SHARE = 0.5
+"""Of the variance of white noise: what rounding leaves less of is not seen among it."""
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """Of one reading.
+
+    Attributes
+    ----------
+    step : between two readings, arcsec or N·m.
+    left_arcsec : rms in the angle.
+    is_seen : whether that is not lost in the angle's white noise.
+    """
+
+    step: float
+    left_arcsec: float
+    is_seen: bool
+
 
 def rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
-    """Rms [arcsec]: no effect of angle or torque can be told below it."""
-    of_angle = rounding_arcsec(prepared.sweep.angle_arcsec, prepared.noise.white)
-    return hypot(of_angle, torque_rounding_left_arcsec(prepared, fit))
+    """Rms [arcsec] by both readings: no effect of angle or torque can be told below it."""
+    angle, torque = rounding_of_angle(prepared), rounding_of_torque(prepared, fit)
+    return hypot(angle.left_arcsec, torque.left_arcsec)
 
 
-def torque_rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
-    """That of a torque read in coarse steps alone."""
+def rounding_of_angle(prepared: PreparedSweep) -> Rounding:
+    """By the encoder's steps."""
+    angle = prepared.sweep.angle_arcsec
+    step, left = encoder_step(angle), rounding_arcsec(angle, prepared.noise.white)
+    is_steps = step >= FINEST_ENCODER * (angle.max() - angle.min())
+    return Rounding(step, left, is_steps and _is_seen(left, prepared))
+
+
+def rounding_of_torque(prepared: PreparedSweep, fit: SweepFit) -> Rounding:
+    """By the steps of the torque reading, through the compliance that `fit` measured."""
     history = prepared.sweep.history
-    rounded = undithered(torque_noise_Nm(history) ** 2, torque_step_Nm(history))
-    return fit.measured_rig().compliance * sqrt(rounded)
+    step = torque_step_Nm(history)
+    left = fit.measured_rig().compliance * sqrt(undithered(torque_noise_Nm(history) ** 2, step))
+    return Rounding(step, left, _is_seen(left, prepared))
+
+
+def _is_seen(left_arcsec: float, prepared: PreparedSweep) -> bool:
+    return left_arcsec > 0 and left_arcsec**2 >= NOISE_SHARE * prepared.noise.white

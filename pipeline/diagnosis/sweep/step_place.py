@@ -34,7 +34,7 @@ SINGULAR_SHARE = 1e-12
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
 ROBUST_DEVIATIONS = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
-CONSTANT = 1e-12
+CONSTANT_SHARE = 1e-12
 """Of a cycle's number, or K: a temperature that does not change is off its mean by rounding, some 1e-14."""
 
 TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
@@ -101,7 +101,7 @@ def changing_heights(history: History) -> np.ndarray:
     if history.temperature_C is not None:
         found.append(history.temperature_C)
     columns = np.column_stack(found)
-    return to_one(columns - columns.mean(axis=0), CONSTANT)
+    return to_one(columns - columns.mean(axis=0), CONSTANT_SHARE)
 
 
 def step_misfit(

@@ -24,7 +24,7 @@ FEWEST_STUCK_HOLDS = 4
 EITHER_P_VALUE = 1e-3
 """p-value of each of the two tests: noise slower than a row passes the one by any margin and vibration the
 other, so that the other alone must hold them off. With 1e-2 a clean record of 49 was said to stick."""
-CORRELATED = 1.5
+CORRELATION_FACTOR = 1.5
 """Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
 LEAST_LOG_VARIANCE = 1e-12
 """Of the logarithm of a ratio of squared steps: steps that are all alike scatter by rounding alone."""
@@ -93,7 +93,7 @@ def _moves_more(
         calm += 2 * (undithered(rows * calm / 2, step) + of_torque) / rows
         if calm <= 0 or lively <= 0:
             continue
-        doubt = CORRELATED * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
+        doubt = CORRELATION_FACTOR * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
         found.append(np.log(lively / calm) / np.sqrt(max(doubt, LEAST_LOG_VARIANCE)))
     return min(1.0, len(found) * float(ndtr(-max(found)))) if found else 1.0
 

@@ -34,7 +34,7 @@ WITHIN_GAP = 0.25
 FAR_BEHIND = 4.5
 """Nats: an offset three deviations from the best one is so much less likely."""
 FINE_STEPS, ZOOMS = 161, 2
-"""Offsets tried among those that are not far behind, and how often they are chosen anew, each time closer."""
+"""Offsets tried of those that are not far behind, and how often they are chosen again, each time nearer."""
 UNSEEN_STEPS = 9
 """Offsets within the torque's noise, each of which counts as none: a quarter of its reach apart."""
 

@@ -35,7 +35,7 @@ def written_model(
     """The calibrated simulation with the named causes, by the best set's shapes.
 
     Where the best set has nuisance terms or minor causes beside them, zeros, stiffness, gap and amplitudes
-    are fitted anew without: fitted beside terms that are left out, they make up for what is not there.
+    are fitted again without: fitted beside terms that are left out, they make up for what is not there.
     """
     identified = explained.identified
     evidence, terms = identified.search.evidence, identified.best.terms

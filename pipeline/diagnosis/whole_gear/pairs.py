@@ -18,7 +18,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
 from flexspline.pipeline.gear_chain import Chain
 
-FOLLOWED = 3
+PAIRS_FOLLOWED = 3
 """Pairs that are followed with the model: slopes at the nominal values order them, roughly."""
 PAIR_STEPS = 6
 """Of Gauss-Newton; the sixth step of made-up records is below a hundredth of a deviation."""
@@ -75,7 +75,7 @@ def fitted_pairs(
     possible.sort(key=lambda each: _bounded(each[0], _nominal(each[0]), each[1], off, std)[1])
     found = [
         _followed(both, chain, curve, (nominal, slope), (wanted, std))
-        for both, slope in possible[:FOLLOWED]
+        for both, slope in possible[:PAIRS_FOLLOWED]
     ]
     return sorted(found, key=lambda each: each.chi_square)
 

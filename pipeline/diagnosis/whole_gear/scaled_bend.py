@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SHARE
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED
+from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED_SIGMAS
 
 LOOP_POWERS = (0, 1, 2)
 """Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""
@@ -41,7 +41,7 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     angle = sweep.angle_arcsec[rows]
     _, spring = _slope(line[rows], beside, angle - bend[rows])
     scale, scaled = _slope((line + bend)[rows], beside, angle)
-    allowed = ALLOWED * prediction.compliance_std / prediction.compliance
+    allowed = ALLOWED_SIGMAS * prediction.compliance_std / prediction.compliance
     if scaled >= spring or scale <= 0 or abs(scale - 1) <= allowed:
         return prediction
     return replace(prediction, measured_bend=prediction.bend.scaled(scale))

@@ -39,7 +39,7 @@ def problem(rng: np.random.Generator, kind: str) -> tuple[np.ndarray, np.ndarray
 def assert_complementary(matrix: np.ndarray, free: np.ndarray, force: np.ndarray) -> None:
     size = np.abs(free).max()
     gap = free + matrix @ force
-    # 10 SEAT_RESIDUAL: the stated rounding, and what forming the gap anew rounds
+    # 10 SEAT_RESIDUAL: the stated rounding, and what forming the gap again rounds
     assert force.min() >= 0
     assert gap.min() > -10 * SEAT_RESIDUAL * size
     assert (force * np.abs(gap)).max() <= 10 * SEAT_RESIDUAL * size * force.max()

@@ -50,7 +50,7 @@ def test_unloaded_teeth_all_hold(model: GearModel) -> None:
 
 
 def test_faces_hardly_matter(model: GearModel) -> None:
-    """One place along the face, condensed anew, in place of five that move as one."""
+    """One place along the face, condensed again, in place of five that move as one."""
     single = gear_model(DESIGN, DESIGN.part("flexspline"), face_places=1)
     limits = [Engagement(each).limit(RATED) for each in (model, single)]
     assert limits[0] == pytest.approx(limits[1], rel=2 * TORQUE_SHARE)

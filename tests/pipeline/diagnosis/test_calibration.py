@@ -19,7 +19,11 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.prediction import prediction_of
-from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep.calibrated import (
+    ALLOWED_SIGMAS,
+    calibrated_residual,
+    less_zero,
+)
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -57,7 +61,7 @@ def test_no_other_calibration_within_its_limits_is_better(compliance: float, gap
     """Against a fine grid of both; stiffness and gap look alike, so limits one by one are not the best."""
     now = raced(compliance, gap)
     history, base, prior = now.columns.rig.history, now.columns.base, now.columns.base_prior
-    ends = np.linspace(-ALLOWED, ALLOWED, 41)
+    ends = np.linspace(-ALLOWED_SIGMAS, ALLOWED_SIGMAS, 41)
     tried = [
         rms(
             less_zero(

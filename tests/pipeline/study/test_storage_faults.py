@@ -27,7 +27,7 @@ def test_a_damaged_file_is_not_to_be_tried_again(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("again", [False, True])
 def test_what_was_deleted_is_not_said_to_be_kept(tmp_path: Path, again: bool) -> None:
-    """The folder goes while a study runs; another process may have begun anew in it."""
+    """The folder goes while a study runs; another process may have started over in it."""
     folder = tmp_path / "out"
     folder.mkdir()
     url = f"sqlite:///{folder / 'study.db'}"
@@ -40,5 +40,5 @@ def test_what_was_deleted_is_not_said_to_be_kept(tmp_path: Path, again: bool) ->
     with pytest.raises(TrialStoreError) as caught:
         store.note("one", 1)
     assert "was deleted" in str(caught.value)
-    assert "begin anew" in str(caught.value)
+    assert "start over" in str(caught.value)
     assert "kept" not in str(caught.value)

@@ -98,7 +98,7 @@ def test_what_is_no_number_says_so_and_stays(tab: Page) -> None:
 def test_a_name_from_right_to_left(tab: Page) -> None:
     name = "تصميم הילוך \u202egear"
     tab.at("#name").fill(name)
-    tab.complete()  # or the list of pinned designs is drawn anew meanwhile
+    tab.complete()  # or the list of pinned designs is drawn again meanwhile
     assert tab.at("#name").evaluate("e => getComputedStyle(e).direction") == "rtl"
     tab.at("#pin").click()
     heading = tab.at("#pinned h2")

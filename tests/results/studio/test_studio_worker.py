@@ -88,8 +88,8 @@ def test_a_question_amid_which_the_worker_was_killed_is_asked_once_more(kills: i
         finally:
             worker.stop()
 
-    amid, after = asyncio.run(run())
-    assert amid == (after if kills == 1 else rules.ENDED)
+    during, after = asyncio.run(run())
+    assert during == (after if kills == 1 else rules.ENDED)
     assert "K_b_Nm_per_rad" in after
 
 

@@ -250,14 +250,14 @@ REFUSED = {
         ("Torque A [Nm],Torque B [Nm],angle_arcsec\n1,2,3\n", '"Torque A [Nm]" and "Torque B [Nm]" both fit'),
     "two units": ("Torque [Nm],Angle [deg]\nmNm,deg\n1,2\n", "two units"),
     "no unit": ("Drehmoment;Winkel [°]\n1;2\n", "column Drehmoment: accepted are torque_Nm"),
-    "an unknown unit": ("Torque [lbf·s],Angle [deg]\n1,2\n", '"lbf·s" is no unit'),
+    "an unknown unit": ("Torque [lbf·s],Angle [deg]\n1,2\n", '"lbf·s" is not a known unit'),
     "degrees or gon": ("Torque [Nm],Angle [grad]\n1,2\n", "angle_deg or angle_gon"),
     "an unknown unit below the head":
         ("Rig\nZeit;M [Nm];Winkel\nfortnight;Nm;deg\n1;1;2\n", ':3: column Zeit: accepted are time_s, '
-         'time_ms, time_us, time_min, time_h, hh:mm:ss; "fortnight" is no unit'),
+         'time_ms, time_us, time_min, time_h, hh:mm:ss; "fortnight" is not a known unit'),
     "an unknown unit in the head, others below":
         ("Rig\nZeit [fortnight];M;Winkel\n;Nm;deg\n1;1;2\n", ':2: column Zeit [fortnight]: accepted'),
-    "a unit of something else": ("Torque [deg],Angle [deg]\n1,2\n", '"deg" is no unit'),
+    "a unit of something else": ("Torque [deg],Angle [deg]\n1,2\n", '"deg" is not a known unit'),
     "day or month first":
         ("Time,torque_Nm,angle_arcsec\n" + "05/01/2024 12:00:00,1,2\n" * 9, "the day or the month"),
     "days only": ("Datum;torque_Nm;angle_arcsec\n" + "01.05.2024;1;2\n" * 9, "a day without a time of day"),
@@ -314,10 +314,10 @@ def test_an_encoder_that_passes_a_full_turn_is_told_from_a_wrong_unit(tmp_path: 
 @pytest.mark.parametrize(
     ("begin", "needle"),
     [(b"\xd0\xcf\x11\xe0" + bytes(600), "old Excel file"), (b"TDSm\0\0", "TDMS"), (b"PK\x03\x04zip",
-        "no readable .xlsx"),
+        "not a readable .xlsx"),
      (b"\xff\xfet", "begins as UTF-16"),
-     (b"torque\x81,angle\n", "no text in UTF-8, cp1252 or cp1250"),
-    (b"\xe7,\x81\n", "byte 0x81 is no text in UTF-8, cp1252 or cp1250"),
+     (b"torque\x81,angle\n", "not text in UTF-8, cp1252 or cp1250"),
+    (b"\xe7,\x81\n", "byte 0x81 is not text in UTF-8, cp1252 or cp1250"),
          (b"\x1f\x8b\x08", "compressed")],
 )  # fmt: skip
 def test_other_files_are_named(begin: bytes, needle: str, tmp_path: Path) -> None:

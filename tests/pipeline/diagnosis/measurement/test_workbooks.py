@@ -101,7 +101,7 @@ DAMAGED = {
 
 @pytest.mark.parametrize("name", DAMAGED)
 def test_damaged_workbooks_are_refused(name: str, tmp_path: Path) -> None:
-    with pytest.raises(MeasurementError, match=r"a\.xlsx: is no readable \.xlsx workbook"):
+    with pytest.raises(MeasurementError, match=r"a\.xlsx: is not a readable \.xlsx workbook"):
         read_measurement(workbook(tmp_path / "a.xlsx", DAMAGED[name]))
 
 

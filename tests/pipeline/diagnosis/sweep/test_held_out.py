@@ -49,7 +49,7 @@ def test_rows_in_the_gap_s_crossing_are_left_out() -> None:
     assert behind is not None
     rows = np.array(outcome.gain.held_out_rows)
     assert np.abs(torque[rows]).min() > behind.explained.prepared.band_Nm
-    # 370 rows: ± 4 %, thrice that
+    # 370 rows: ± 4 %, three times that
     assert outcome.gain.rmse_after == pytest.approx(NOISE_ARCSEC, rel=0.12)
 
 
@@ -132,7 +132,7 @@ def test_a_unit_has_its_own_name() -> None:
 
 
 def test_cycles_of_a_shortened_record_keep_their_numbers(tmp_path: Path) -> None:
-    """Of 200 cycles from 301 on, some are left out as a whole: what is left is not counted anew."""
+    """Of 200 cycles from 301 on, some are left out as a whole: what is left is not counted again."""
     softened(tmp_path / "rig.csv", 20_000, 200, first=301)
     read = read_measurement(tmp_path / "rig.csv")
     assert isinstance(read, Sweep)
@@ -289,7 +289,7 @@ def test_what_is_known_carries_over_to_an_amplitude_not_measured() -> None:
     raced = explained(history, angle)
     gains = gains_of(raced, ("friction_hysteresis",))[1]
     assert {left_out_words(g.held_out) for g in gains} == {"amplitude 1 N·m", "amplitude 2 N·m"}
-    for g in gains:  # 300 rows and more: the rms of the noise is good to 4 %, thrice that
+    for g in gains:  # 300 rows and more: the rms of the noise is good to 4 %, three times that
         assert g.rmse_after == pytest.approx(0.5, rel=0.15)
         assert g.rmse_before > 4.0  # 6 arcsec beside the line on all but the reversals
 
@@ -336,7 +336,7 @@ APART_DEG = 360.0 / 9
 def test_a_level_with_positions_of_its_own_says_where_it_is(
     places: np.ndarray, elsewhere: bool
 ) -> None:
-    """Nine cycles, every third to half the torque; a wave generator locked anew for each, or never."""
+    """Nine cycles, every third to half the torque; a wave generator locked again for each, or never."""
     history = replace(levels((1.0, 1.0, 0.5) * 3, (1.0,) * 9), temperature_C=None)
     place = places[history.cycle]
     history = replace(history, input_angle_deg=place)

@@ -1,4 +1,4 @@
-"""A shifted torque reading whose place, found anew, leaves a few rows on the wrong side of the gap."""
+"""A shifted torque reading whose place, found again, leaves a few rows on the wrong side of the gap."""
 
 from __future__ import annotations
 

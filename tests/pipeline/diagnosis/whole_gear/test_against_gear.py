@@ -119,7 +119,7 @@ def test_the_budget_of_an_extended_model_has_the_bend_in_it() -> None:
 
 def test_only_a_sweep_is_held_against_the_gear(chain: Chain) -> None:
     points = EXAMPLES / "measured" / "size-40-end-points.csv"
-    with pytest.raises(MeasurementError, match="is no torque sweep"):
+    with pytest.raises(MeasurementError, match="is not a torque sweep"):
         diagnose_file(DESIGN, points, K_b, K_e, chain=chain)
 
 
