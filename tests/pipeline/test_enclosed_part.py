@@ -155,7 +155,7 @@ def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypat
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
 
 
-@pytest.mark.parametrize("solver", ["auto", "solid"])
+@pytest.mark.parametrize("solver", ["auto", pytest.param("solid", marks=pytest.mark.long)])
 def test_a_wrong_solid_model_of_the_lobes_is_found_out(
     solver: str, tmp_path: Path, monkeypatch
 ) -> None:
@@ -173,6 +173,7 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
         rim_stiffness(model(WIDE.changed({"solver.model": solver}), tmp_path), "lobes")
 
 
+@pytest.mark.long
 def test_lift_off_that_the_solid_model_cannot_solve_is_said(tmp_path: Path) -> None:
     asked = {"solver.model": "solid", "solver.tolerance_pct": 5.0}
     context = AnalysisContext(CUP.changed(asked), Cache(tmp_path), Progress())

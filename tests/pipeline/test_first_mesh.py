@@ -59,7 +59,7 @@ def test_edges_stay_where_longer_ones_leave_as_many_elements(tmp_path: Path) -> 
     assert found.half_width <= 0.005
 
 
-@pytest.mark.parametrize("kind", ["layered", "tetwild"])
+@pytest.mark.parametrize("kind", ["layered", pytest.param("tetwild", marks=pytest.mark.long)])
 def test_a_sweep_that_fails_when_refined_is_left_altogether(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -59,6 +59,7 @@ def check_threads(design: Path, folder: Path) -> float:
     return max(differences)
 
 
+@pytest.mark.long
 def test_threads_of_a_body_of_revolution(tmp_path: Path) -> None:
     check_threads(bases.plain(tmp_path, tolerance_pct=2.0), tmp_path)
 

@@ -59,6 +59,7 @@ def dent(n: int) -> float:
     return -through_thickness(u[under[np.argsort(mesh.nodes[under, X])], X])
 
 
+@pytest.mark.long
 def test_pinched_cylinder_displacement_under_the_force(record) -> None:
     """Belytschko's 1.8248e-5 (thin-shell series), one layer through the thickness."""
     dents = [dent(n) for n in (24, 32, 48)]

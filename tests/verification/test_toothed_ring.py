@@ -121,6 +121,7 @@ def test_depth_of_blades_is_what_the_sources_say() -> None:
     assert across_blades() == pytest.approx(0.0886, abs=5e-5)
 
 
+@pytest.mark.long
 def test_slit_rim_against_flow_over_blades(record) -> None:
     ring, spacing = slit_rim()
     beyond = [(t - 1) / spacing for t in (ring.bending_mm, ring.membrane_mm, ring.torsion_mm)]

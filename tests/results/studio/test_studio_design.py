@@ -48,6 +48,7 @@ def test_a_slider_moves_and_the_figures_follow(tab: Page) -> None:
     assert page.value("backlash_arcsec.shaft") == pytest.approx(2 / shaft * 206264.806, rel=1e-6)
 
 
+@pytest.mark.long
 def test_the_part_turns_and_is_coloured(tab: Page) -> None:
     tab.complete()
     part = tab.at("#canvas")

@@ -48,6 +48,7 @@ DRAG = """async (key) => {  // until both have moved often enough; a slow machin
 }"""
 
 
+@pytest.mark.long
 def test_figures_and_picture_move_while_a_slider_does(page: Page) -> None:
     page.complete()
     figures, pictures = page.tab.evaluate(DRAG, WALL)

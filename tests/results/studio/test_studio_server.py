@@ -151,7 +151,8 @@ def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
         time.sleep(after_s)
         os.killpg(studio.pid, signal.SIGINT)  # as a terminal does: to all of them
         _, said = studio.communicate(timeout=60)
-    assert (studio.returncode, said) == (0, "stop with Ctrl-C\n")
+    late = "flexspline: stopping: the step under way ends first\n"  # of a loaded machine
+    assert (studio.returncode, said.removesuffix(late)) == (0, "stop with Ctrl-C\n")
 
 
 def test_a_job_that_cannot_begin_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:

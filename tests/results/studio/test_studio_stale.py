@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
+import pytest
 from held import HeldStudio
 from studio_page import PATIENCE_MS, Page
 
@@ -87,6 +88,7 @@ def test_a_late_answer_is_grey_too(tab: Page, held: HeldStudio) -> None:
     assert tab.at("#stage.former").count() == 0
 
 
+@pytest.mark.long
 def test_beside_a_newly_opened_design_the_former_one_s_figures_are_grey(
     tab: Page, held: HeldStudio
 ) -> None:

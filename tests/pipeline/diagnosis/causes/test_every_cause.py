@@ -128,7 +128,7 @@ def test_every_shape_may_be_read_back(cause: Cause) -> None:
     """The check of model files refuses nothing that a cause tries, on records of many kinds."""
     for history in (*OTHERS.values(), sweep(cycles=9), sweep(rows=200, hold=50)):
         for shape in cause.shapes(FitContext(PREDICTION, history)):
-            k = cause.columns(shape, history).shape[1]
+            k = cause.columns(shape, OTHERS["coarse"]).shape[1]
             assert fault_of(cause, shape, k) is None
     k = cause.columns(shapes(cause)[0], RIG.history).shape[1]
     assert fault_of(cause, {**shapes(cause)[0], "colour": 1.0}, k) is not None

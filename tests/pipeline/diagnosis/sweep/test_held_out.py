@@ -74,7 +74,9 @@ def softened(
     return torque, np.floor(turn) + first
 
 
-@pytest.mark.parametrize(("rows", "wrong"), [(12_000, 0), (12_000, 30), (800, 30)])
+@pytest.mark.parametrize(
+    ("rows", "wrong"), [(12_000, 0), pytest.param(12_000, 30, marks=pytest.mark.long), (800, 30)]
+)
 def test_rows_judged_are_those_of_the_file(rows: int, wrong: int, tmp_path: Path) -> None:
     """Where a long record is judged by means, and behind rows that were left out as wrong readings."""
     torque, cycle = softened(tmp_path / "rig.csv", rows, 4, wrong)

@@ -59,7 +59,9 @@ def test_a_gear_without_effects_is_told_so(tmp_path: Path, programme: str, rows:
     assert abs(gap.value - GAP) < 3 * gap.std
 
 
-@pytest.mark.parametrize(("programme", "rows"), [("sine", 2000), ("rests", 6000)])
+@pytest.mark.parametrize(
+    ("programme", "rows"), [("sine", 2000), pytest.param("rests", 6000, marks=pytest.mark.long)]
+)
 def test_hardening_is_found_beside_it(tmp_path: Path, programme: str, rows: int) -> None:
     """The torque's own noise would make a curve of the reading less like the gear's than of the torque."""
     found = diagnosed(tmp_path, programme, rows, 5, hardening=0.06)
