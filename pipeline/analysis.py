@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.peak import stress_field
-from flexspline.fea.types import MET, Shortfall, SolidField, Stiffness, StressPeak
+from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.percent import percent
@@ -20,16 +19,13 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import (
     PEAK_STRESS_TOLERANCE,
     ellipse_field,
-    ellipse_peak,
-    half_seat_peak,
 )
+from flexspline.pipeline.figure_tasks import FigureTasks
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.load_cases import rim_stiffness
-from flexspline.pipeline.part_stiffness import part_stiffness, twisted_part
+from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
@@ -75,11 +71,13 @@ def stiffnesses(
     shaft: bool = True,
     rim: bool = True,
     solved: Callable[[PartModel], None] = lambda part: None,
+    begun: Callable[[], None] = lambda: None,
 ) -> Stiffnesses:
     """All that `flexspline stiffness` answers, for the parts that are asked for.
 
     What fails is absent, with its reason in `missing`; the rest is there. `solved` is told each part
-    after its K, by the thread that found it: there are two.
+    after its K, by one of two threads. `begun` is called before the solves, and after this process has been
+    copied where it may be (`second_process`).
 
     Without `rim` the lobes and the wave generator are left out: the backlash sum needs them only
     where `solver.load_case` says so.
@@ -93,74 +91,32 @@ def stiffnesses(
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         if wanted:
             part.refuse_settings()
-    found = _Figures()
-    tasks: list[Callable[[], Attempts]] = [
-        partial(found.solve_part, name, part, solved)
-        for name, part, wanted in (("K_b", rim_part, flexspline), ("K_e", shaft_part, shaft))
-        if wanted
-    ]
+    tasks = FigureTasks(context, solved)
+    if flexspline:
+        tasks.add_part("K_b", rim_part)
+    if shaft:
+        tasks.add_part("K_e", shaft_part)
     if flexspline and rim:
-        tasks += found.rim_tasks(rim_part)
-    with beside(context.progress, tasks[1:]) as rest:
-        tried = [*(task() for task in tasks[:1]), *rest()]
+        tasks.add_rim(rim_part)
+    found = tasks.figures(begun)
     return Stiffnesses(
         in_order(found.K),
         found.peaks.get("wave_generator_peak"),
         found.peaks.get("half_seat_peak"),
         context.ring if flexspline else None,
-        {name: why for each in tried for name, why in each.missing.items()},
+        found.missing,
     )
 
 
-class _Figures:
-    """K and peak stresses by name, as they are found by tasks of two threads; None: not found.
-
-    Each task gives what it tried.
-    """
-
-    def __init__(self) -> None:
-        self.K: dict[str, Stiffness | None] = {}
-        self.peaks: dict[str, StressPeak | None] = {}
-
-    def solve_part(
-        self, name: str, part: PartModel, solved: Callable[[PartModel], None]
-    ) -> Attempts:
-        """K of a part; `solved` is told after it."""
-        tried = Attempts()
-        self.K[name] = tried.get(name, partial(part_stiffness, part))
-        solved(part)
-        return tried
-
-    def rim_tasks(self, rim: PartModel) -> list[Callable[[], Attempts]]:
-        """What the lobes and the ellipse do to the rim.
-
-        Long ones first, so that two threads end together. Lift-off has no solid model: it stands between
-        two cases that may have large ones, of which one waits for the other (`fea.solid.alone`).
-        """
-        return [
-            *(partial(self._solve_case, rim, case) for case in RIM_CASES),
-            partial(self._find, rim, "wave_generator_peak", ellipse_peak),
-            partial(self._find, rim, "half_seat_peak", half_seat_peak),
-        ]
-
-    def _solve_case(self, rim: PartModel, case: RimCase) -> Attempts:
-        tried, name = Attempts(), figure_of(case)
-        self.K[name] = tried.get(name, partial(rim_stiffness, rim, case))
-        return tried
-
-    def _find(self, rim: PartModel, name: str, peak: Callable[[PartModel], StressPeak]) -> Attempts:
-        tried = Attempts()
-        self.peaks[name] = tried.get(name, partial(peak, rim))
-        return tried
-
-
 def run(
-    context: AnalysisContext, told: Callable[[str, SolidField], None] = lambda name, field: None
+    context: AnalysisContext,
+    told: Callable[[str, SolidField], None] = lambda name, field: None,
+    begun: Callable[[], None] = lambda: None,
 ) -> RunResult:
     """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
 
     A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `told` is given each of
-    `RunResult.fields` as soon as it is there, by one of two threads.
+    `RunResult.fields` as soon as it is there, by one of two threads. `begun`: as of `stiffnesses`.
 
     Raises
     ------
@@ -179,7 +135,7 @@ def run(
     def under_torque(part: PartModel) -> None:
         solve(f"{part.name}_torque", lambda: torque_field(part))
 
-    found = stiffnesses(context, solved=under_torque)
+    found = stiffnesses(context, solved=under_torque, begun=begun)
     found.require(design)
     total = backlash_of(design, found)
     tried_gear = Attempts()

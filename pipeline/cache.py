@@ -14,28 +14,32 @@ import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
-from threading import Lock, RLock
+from threading import Lock
 from typing import Any, TypeVar
 
+from flexspline.fea.turns import Turn
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
 
 T = TypeVar("T")
+PLACE_DIGITS = 12
+"""Hexadecimal ones of a key that tell its turn's place in a file: two of a thousand keys share one once in
+5e8 times, and wait for each other."""
 FORMAT = 26
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
 class Turns:
-    """A lock for each key. A value asks only for values of earlier stages, so none waits in a circle."""
+    """One for each key. A value asks only for values of earlier stages, so none waits in a circle."""
 
     def __init__(self) -> None:
         self._own = Lock()
-        self._locks: dict[str, RLock] = {}
+        self._turns: dict[str, Turn] = {}
 
-    def __getitem__(self, key: str) -> RLock:
+    def __getitem__(self, key: str) -> Turn:
         with self._own:
-            return self._locks.setdefault(key, RLock())
+            return self._turns.setdefault(key, Turn(1 + int(key[:PLACE_DIGITS], 16)))
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ class Cache:
         """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
 
         A value that is not lasting is kept as long as this object and not on disk: another run may do better.
-        Of two threads that ask for one value the second waits for the first.
+        Of two threads that ask for one value, or of a process and its copy, the second waits for the first.
 
         Raises
         ------

@@ -56,6 +56,10 @@ class Progress:
         finally:
             whole = time.monotonic() - began
             own = whole - inner.pop()
-            self.seconds[name] = self.seconds.get(name, 0.0) + own
+            self.add(name, own)
             if inner:
                 inner[-1] += whole
+
+    def add(self, name: str, seconds: float) -> None:
+        """A stage's own time, such as of another process."""
+        self.seconds[name] = self.seconds.get(name, 0.0) + seconds

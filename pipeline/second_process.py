@@ -8,14 +8,17 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
+
+import numpy as np
 
 from flexspline.fea.threads import one_thread
+from flexspline.fea.turns import shared_turns
 
 T = TypeVar("T")
 _ALLOWED = ContextVar("allowed", default=False)
@@ -38,33 +41,64 @@ def second_process() -> Iterator[None]:
         _ALLOWED.reset(token)
 
 
-def results_of(tasks: Sequence[Callable[[], T]]) -> list[T]:
+def may_copy() -> bool:
+    """Whether `results_of` may take a second process."""
+    return _ALLOWED.get()
+
+
+def results_of(
+    tasks: Sequence[Callable[[], T]], begun: Callable[[], None] = lambda: None
+) -> list[T]:
     """What each task returns, in their order; a task must change nothing that others look at.
 
-    Every other one runs in the second process, if there may be one. Where it fails, whatever the reason, its
-    tasks are done here once more, and what they raise then is raised.
+    A second process takes those not yet begun, if there may be one. Where it fails, whatever the reason, its
+    tasks are done here once more, and what they raise then is raised. `begun` is called here after it began,
+    and may start threads: the copy is made.
     """
-    theirs = tasks[1::2]
-    if not theirs or not _ALLOWED.get():
+    if len(tasks) < 2 or not may_copy():
+        begun()
         return [task() for task in tasks]
     copying = get_context("fork")
-    try:
-        here, there = copying.Pipe(duplex=False)
-        second = copying.Process(target=_send_results, args=(there, theirs), daemon=True)
-        second.start()
-    except OSError:  # no process or open file more is allowed, or no memory
-        return [task() for task in tasks]
-    there.close()
-    try:
-        mine = [task() for task in tasks[::2]]
-        others: list[T] | None = _received(here)
-    finally:
-        second.kill()
-        second.join()
-    if others is None:
-        others = [task() for task in theirs]
-    both = iter(mine), iter(others)
-    return [next(both[number % 2]) for number in range(len(tasks))]
+    with ExitStack() as open_files:
+        try:
+            numbers = open_files.enter_context(_Numbers(len(tasks)))
+            open_files.enter_context(shared_turns())
+            here, there = copying.Pipe(duplex=False)
+            second = copying.Process(
+                target=_send_results, args=(there, numbers, tasks), daemon=True
+            )
+            second.start()
+        except OSError:  # no process or open file more is allowed, or no memory
+            begun()
+            return [task() for task in tasks]
+        there.close()
+        try:
+            begun()
+            done = _work(numbers, tasks)
+            done |= _received(here)
+        finally:
+            second.kill()
+            second.join()
+        return [done[n] if n in done else task() for n, task in enumerate(tasks)]
+
+
+class _Numbers:
+    """Of the tasks not yet begun, in a pipe: each is read once, by the process that comes first."""
+
+    def __init__(self, count: int) -> None:
+        self._read, write = os.pipe()
+        with os.fdopen(write, "wb") as to:
+            to.write(np.arange(count, dtype=np.int32).tobytes())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._read)
+
+    def __iter__(self) -> Iterator[int]:
+        while number := os.read(self._read, np.dtype(np.int32).itemsize):
+            yield int(np.frombuffer(number, np.int32)[0])
 
 
 def _can_copy() -> bool:
@@ -72,18 +106,24 @@ def _can_copy() -> bool:
     return sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 
 
-def _send_results(to: Connection, tasks: Sequence[Callable[[], T]]) -> None:
+def _work(numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> dict[int, T]:
+    """What the tasks return that nobody has begun, by their number."""
+    return {number: tasks[number]() for number in numbers}
+
+
+def _send_results(to: Connection, numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> None:
     # Ctrl-C reaches both; the first process ends the second
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        to.send([task() for task in tasks])
+        to.send(_work(numbers, tasks))
     except BaseException:
         os._exit(1)  # the first process meets the fault itself
 
 
-def _received(sent: Connection) -> Any:
-    """None where the second process ended without an answer, or in the middle of one."""
+def _received(sent: Connection) -> dict[int, Any]:
+    """Nothing where the second process ended without an answer, or in the middle of one."""
     try:
-        return sent.recv()
+        received: dict[int, Any] = sent.recv()
     except Exception:  # what it sent may fail in any way as it is made again
-        return None
+        return {}
+    return received

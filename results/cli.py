@@ -84,6 +84,7 @@ def run(
             tell_all(model_warnings(measured, job.design))
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+        from flexspline.pipeline.second_process import second_process
         from flexspline.results.gear_words import gear_notes
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
@@ -92,8 +93,8 @@ def run(
         from flexspline.results.warned import solved_warnings
 
         with RunDrawings(job.context) as drawings:
-            with kept(job, json):
-                result = run_chain(job.context, drawings.add_field)
+            with kept(job, json), second_process():
+                result = run_chain(job.context, drawings.add_field, drawings.prepare)
             tell_all(solved_warnings(result))
             for line in gear_notes(result.gear) if result.gear else ():
                 tell(f"note: {line}")
@@ -126,8 +127,10 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     with answered(design, RESUMES):
         job = begin(design, out, ONE_RECORD)
         from flexspline.pipeline.analysis import stiffnesses
+        from flexspline.pipeline.second_process import second_process
 
-        found = stiffnesses(job.context)
+        with second_process():
+            found = stiffnesses(job.context)
         keep(job, found, json)
         found.require(job.design)
 
@@ -143,9 +146,10 @@ def backlash(
     """Backlash as the sum of four terms."""
     with answered(design, RESUMES):
         job = begin(design, out, ONE_RECORD)
+        from flexspline.pipeline.second_process import second_process
         from flexspline.results.backlash import backlash_answer
 
-        with kept(job, json):
+        with kept(job, json), second_process():
             record = backlash_answer(
                 job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
             )

@@ -72,15 +72,18 @@ class RunDrawings:
         self._small: dict[str, bytes] = {}
 
     def __enter__(self) -> RunDrawings:
-        part = self.context.part("flexspline")
-        if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
-            self._threads.submit(self._draw, load)  # while the part is solved
         return self
 
     def __exit__(self, *_: object) -> None:
         for process in self._processes:  # first: the threads then come to their end
             process.__exit__()
         self._threads.shutdown(cancel_futures=True)
+
+    def prepare(self) -> None:
+        """Load what draws parts, in its own process, while they are solved; nothing where all is drawn."""
+        part = self.context.part("flexspline")
+        if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
+            self._threads.submit(self._draw, load)
 
     def add_field(self, name: str, field: SolidField) -> None:
         """Begin to draw one of `RunResult.fields`."""

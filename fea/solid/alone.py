@@ -1,20 +1,22 @@
-"""Large solid models are assembled and solved one at a time: threads that wait do not add up their memory."""
+"""Large solid models are assembled and solved one at a time: whoever waits does not add up memory."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import RLock
+
+from flexspline.fea.turns import Turn
 
 LARGE = 30_000
 """Elements: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5 GB of factors in single
 precision. Two of 30 688 and 35 016 at once made 2.45 GB of a command with factors in double."""
-_TURN = RLock()
+_TURN = Turn(0)
 
 
 @contextmanager
 def alone(elements: int) -> Iterator[None]:
-    """While the context lasts no other thread is in one for a model of LARGE elements or more."""
+    """While the context lasts no other thread, and no copy of this process, is in one for a model of LARGE
+    elements or more."""
     if elements < LARGE:
         yield
         return

@@ -15,6 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flexspline.fea.solid.alone import LARGE, alone
+from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.second_process import results_of, second_process
 
 linux_with_two_processors = pytest.mark.skipif(
@@ -37,14 +39,52 @@ def test_results_come_in_order(count: int) -> None:
         assert np.array_equal(one, other)
 
 
+def wait_and_say(_: int) -> int:
+    time.sleep(0.2)
+    return os.getpid()
+
+
 @linux_with_two_processors
-def test_every_other_task_runs_elsewhere_where_that_is_allowed() -> None:
-    tasks = [partial(square, k) for k in range(4)]
-    assert {pid for pid, _ in results_of(tasks)} == {os.getpid()}
+def test_two_processes_share_the_tasks_where_that_is_allowed() -> None:
+    tasks = [partial(wait_and_say, k) for k in range(6)]
+    assert {*results_of(tasks)} == {os.getpid()}
     with second_process():
-        pids = [pid for pid, _ in results_of(tasks)]
-    assert pids[::2] == 2 * [os.getpid()]
-    assert os.getpid() not in pids[1::2]
+        pids = results_of(tasks)
+    assert len({*pids}) == 2
+    assert os.getpid() in pids
+
+
+@linux_with_two_processors
+def test_who_is_done_takes_the_next_task() -> None:
+    """A long one and five short ones: the other process does all the short ones."""
+
+    def task(number: int) -> int:
+        time.sleep(1.0 if number == 0 else 0.01)
+        return os.getpid()
+
+    with second_process():
+        long, *short = results_of([partial(task, k) for k in range(6)])
+    assert len({*short}) == 1
+    assert long not in short
+
+
+@linux_with_two_processors
+def test_a_turn_ends_with_the_process_that_had_it() -> None:
+    """A large model's turn is shared, and nobody waits for a process that the system has killed."""
+    here, times = os.getpid(), 2
+
+    def task(number: int) -> float:
+        began = time.monotonic()
+        with alone(LARGE):
+            if os.getpid() != here and number == 0:
+                os.kill(os.getpid(), signal.SIGKILL)
+            time.sleep(0.3)
+        return time.monotonic() - began
+
+    with second_process():
+        both = results_of([partial(task, k) for k in range(1, 1 + times)])
+        assert max(both) > 0.5  # one waited for the other
+        assert len(results_of([partial(task, 0) for _ in range(times)])) == times
 
 
 @linux_with_two_processors
@@ -102,6 +142,27 @@ def test_ctrl_c_ends_both_without_a_word_of_the_second(tmp_path: Path) -> None:
     assert ran.returncode == 130
     assert said == ""
     assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
+
+
+@linux_with_two_processors
+def test_one_value_is_made_once_by_both(tmp_path: Path) -> None:
+    """The second to ask for it waits, and reads what the first has stored."""
+    cache = Cache(tmp_path / "cache")
+
+    def make() -> str:
+        time.sleep(0.3)
+        with (tmp_path / "made").open("a") as file:
+            file.write("once\n")
+        return "value"
+
+    def task() -> tuple[str, int]:
+        return cache.get("stage", {"of": "both"}, make)[0], os.getpid()
+
+    with second_process():
+        found = results_of([task, task])
+    assert {value for value, _ in found} == {"value"}
+    assert len({process for _, process in found}) == 2
+    assert (tmp_path / "made").read_text() == "once\n"
 
 
 class _Unreadable(ValueError):

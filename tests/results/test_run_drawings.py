@@ -16,6 +16,7 @@ from flexspline.pipeline.progress import Progress
 from flexspline.results.drawings import Drawing
 from flexspline.results.pictures import RunDrawings
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.results.renders.scene import load
 
 CUP = EXAMPLES / "xb1-40.toml"
 
@@ -72,6 +73,15 @@ def test_a_stop_ends_the_drawing(context) -> None:
         drawings.add([Drawing("endless", "chart", {}, failing_drawings.hanging, ())])
         drawings.add(charts(1))
     assert not list((context.cache.folder / "picture").glob("*.npz"))
+
+
+def test_the_drawing_library_is_loaded_where_something_is_to_be_drawn(context, monkeypatch) -> None:
+    asked: list[object] = []
+    monkeypatch.setattr(DrawingProcess, "draw", lambda self, write, *given: asked.append(write))
+    with RunDrawings(context) as drawings:
+        assert not asked  # no thread yet: this process may still be copied
+        drawings.prepare()
+    assert asked == [load]
 
 
 def test_what_is_kept_needs_no_process(context, tmp_path: Path, monkeypatch) -> None:

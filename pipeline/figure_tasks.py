@@ -1,0 +1,128 @@
+"""The figures of a design, two at a time: in two processes where that is allowed, else in two threads.
+
+Threads share Python's interpreter: on two cores two processes take three quarters of their time.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from flexspline.fea.types import Shortfall, Stiffness, StressPeak
+from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.ellipse_peak import ellipse_peak, half_seat_peak
+from flexspline.pipeline.load_cases import rim_stiffness
+from flexspline.pipeline.part_stiffness import part_stiffness
+from flexspline.pipeline.parts import AnalysisContext, PartModel
+from flexspline.pipeline.rim_case import RIM_CASES, figure_of
+from flexspline.pipeline.second_process import may_copy, results_of
+from flexspline.pipeline.two_threads import beside
+
+
+@dataclass
+class Figures:
+    """K and peak stresses by name, and why others are missing."""
+
+    K: dict[str, Stiffness] = field(default_factory=dict)
+    peaks: dict[str, StressPeak] = field(default_factory=dict)
+    missing: dict[str, Shortfall] = field(default_factory=dict)
+
+    def add(self, other: Figures) -> None:
+        """What another task found."""
+        self.K |= other.K
+        self.peaks |= other.peaks
+        self.missing |= other.missing
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Of one task; what a copy of this process remembers of it, and the seconds of its stages there."""
+
+    figures: Figures
+    passing: dict[str, Any]
+    seconds: dict[str, float]
+
+
+class FigureTasks:
+    """What is asked for, long ones first, so that both processes or threads end together.
+
+    Lift-off has no solid model: it stands between two cases that may have large ones, of which one waits for
+    the other (`fea.solid.alone`).
+    """
+
+    def __init__(self, context: AnalysisContext, solved: Callable[[PartModel], None]) -> None:
+        """`solved` is told each part after its K, by the thread that found it; what another process found
+        it is told at the end."""
+        self._context, self._solved = context, solved
+        self._tasks: list[Callable[[], _Found]] = []
+        self._untold: dict[str, PartModel] = {}
+        self._process = os.getpid()
+
+    def add_part(self, name: str, part: PartModel) -> None:
+        """K of a part, by the name of the figure."""
+        self._untold[name] = part
+        self._tasks.append(partial(self._found, partial(self._part, name, part)))
+
+    def add_rim(self, rim: PartModel) -> None:
+        """What the lobes and the ellipse do to the rim."""
+        for case in RIM_CASES:
+            figures = partial(_stiffness, figure_of(case), partial(rim_stiffness, rim, case))
+            self._tasks.append(partial(self._found, figures))
+        for name, peak in (
+            ("wave_generator_peak", ellipse_peak),
+            ("half_seat_peak", half_seat_peak),
+        ):
+            self._tasks.append(partial(self._found, partial(_peak, name, partial(peak, rim))))
+
+    def figures(self, begun: Callable[[], None]) -> Figures:
+        """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
+        if may_copy():
+            found = results_of(self._tasks, begun)
+        else:
+            begun()
+            with beside(self._context.progress, self._tasks[1:]) as rest:
+                found = [*(task() for task in self._tasks[:1]), *rest()]
+        figures = Figures()
+        for each in found:
+            figures.add(each.figures)
+            self._context.cache.passing.update(each.passing)
+            for stage, seconds in each.seconds.items():
+                self._context.progress.add(stage, seconds)
+        for name in [*self._untold]:
+            self._tell(name)
+        return figures
+
+    def _part(self, name: str, part: PartModel) -> Figures:
+        figures = _stiffness(name, partial(part_stiffness, part))
+        if os.getpid() == self._process:
+            self._tell(name)
+        return figures
+
+    def _tell(self, name: str) -> None:
+        self._solved(self._untold.pop(name))
+
+    def _found(self, make: Callable[[], Figures]) -> _Found:
+        if os.getpid() == self._process:
+            return _Found(make(), {}, {})
+        passing, seconds = {*self._context.cache.passing}, dict(self._context.progress.seconds)
+        figures = make()
+        return _Found(
+            figures,
+            {k: v for k, v in self._context.cache.passing.items() if k not in passing},
+            {k: s - seconds.get(k, 0.0) for k, s in self._context.progress.seconds.items()},
+        )
+
+
+def _stiffness(name: str, solve: Callable[[], Stiffness]) -> Figures:
+    tried = Attempts()
+    K = tried.get(name, solve)
+    return Figures({} if K is None else {name: K}, {}, tried.missing)
+
+
+def _peak(name: str, find: Callable[[], StressPeak]) -> Figures:
+    tried = Attempts()
+    peak = tried.get(name, find)
+    return Figures({}, {} if peak is None else {name: peak}, tried.missing)
