@@ -81,24 +81,30 @@ def evaluate_all(
         watch(StudyProgress(rows, len(rows) - before, time.monotonic() - began, source.size))
         return rows
 
-    store.beat()
-    while True:
-        _give_out(pending, pool, evaluate, source, store)
-        if not pending:
-            rows = tell()
-            if len(rows) >= source.size:
-                return rows
-            time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
-            _adopt(source, store)
-        elif _store_finished(pending, pool, source, store):
-            started = time.monotonic()
-            if started > next_word:
-                tell()
-                ended = time.monotonic()
-                next_word = ended + max(WATCH_S, (ended - started) / WATCH_SHARE)
-        if time.monotonic() - beaten > BEAT_S:
-            beaten = time.monotonic()
-            store.beat()
+    try:
+        store.beat()
+        while True:
+            _give_out(pending, pool, evaluate, source, store)
+            if not pending:
+                rows = tell()
+                if len(rows) >= source.size:
+                    return rows
+                time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
+                _adopt(source, store)
+            elif _store_finished(pending, pool, source, store):
+                started = time.monotonic()
+                if started > next_word:
+                    tell()
+                    ended = time.monotonic()
+                    next_word = ended + max(WATCH_S, (ended - started) / WATCH_SHARE)
+            if time.monotonic() - beaten > BEAT_S:
+                beaten = time.monotonic()
+                store.beat()
+    except (
+        BaseException
+    ):  # a notebook's process lives on, and nobody else would take these for free
+        store.release()
+        raise
 
 
 def is_complete(source: Source, store: TrialStore) -> bool:

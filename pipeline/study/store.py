@@ -209,6 +209,17 @@ class TrialStore:
         self._known.held.discard(job.trial_id)
         self.tell(job.number, None)
 
+    def release(self) -> None:
+        """Close what this process claimed and has not finished: it is free again.
+
+        What fails of it is left to whoever finds the process gone.
+        """
+        known = self._known
+        with suppress(Exception):
+            for one in [t for t in known.open() if t.trial_id in known.held]:
+                known.held.discard(one.trial_id)
+                self.tell(one.number, None)
+
     @_plainly
     def notes(self) -> dict[str, Any]:
         """What is stored beside the trials, by name."""

@@ -145,6 +145,25 @@ def test_a_bug_is_no_reason(tmp_path: Path) -> None:
         run_study(study, trial_store_of(study, tmp_path), threads, silent, broken)
 
 
+@pytest.mark.parametrize("at", [1, 4])
+def test_what_was_stopped_goes_on_in_the_same_process(at: int, tmp_path: Path) -> None:
+    """A notebook's: it lives on, and its own unfinished designs waited for it for ever."""
+    study, heard = study_of(GRID), list[object]()
+
+    def stop(progress: object) -> None:
+        heard.append(progress)
+        if len(heard) == at:
+            raise KeyboardInterrupt
+
+    slow = Counted(tmp_path / "done", 0.7)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(study, trial_store_of(study, tmp_path), threads, stop, slow)
+    began = time.monotonic()
+    rows = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows
+    assert len(rows) == 6
+    assert time.monotonic() - began < 20
+
+
 def test_a_study_without_an_objective_has_no_best_and_ends(tmp_path: Path) -> None:
     study = study_of(GRID.replace('[objective]\n"K_b_Nm_per_rad" = "maximize"\n', ""))
     result = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
