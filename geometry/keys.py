@@ -49,7 +49,9 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     """
     tables = design.tables
     for key, value in values.items():
-        table, last = _reach(tables, key)
+        table, last = _reach(tables, key, value)
+        if getattr(value, "shape", None) == ():  # numpy's numbers
+            value = value.item()  # type: ignore[attr-defined]
         # what the file does not state may be a whole number as well
         if isinstance(table.get(last, 0), int) and isinstance(value, float) and value.is_integer():
             value = int(value)
@@ -91,8 +93,8 @@ def location_of(key: str) -> Location:
     return tuple(int(name) if PLACE.fullmatch(name) else name for name in names)
 
 
-def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:
-    """The table that holds a key, and the key's last name."""
+def _reach(tables: dict[str, Any], key: str, value: object = None) -> tuple[dict[str, Any], str]:
+    """The table that holds a key, and the key's last name; `value`: what it shall hold, for the error."""
     *path, last = location_of(key)
     here: Any = tables
     for depth, part in enumerate(path, 1):
@@ -102,7 +104,7 @@ def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:
         try:
             here = here[part]
         except (KeyError, IndexError, TypeError):
-            raise DesignError(key, None, "no such key in the design file") from None
+            raise DesignError(key, value, "no such key in the design file") from None
     if not (isinstance(here, dict) and isinstance(last, str)):
-        raise DesignError(key, None, "no such key in the design file")
+        raise DesignError(key, value, "no such key in the design file")
     return here, last

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.no_design import require_design
 
 if TYPE_CHECKING:
@@ -64,6 +65,8 @@ def diagnose(
         return analysis_context(design)
 
     require_design(design)
+    if against not in ("sum", "gear"):
+        raise DesignError("against", against, 'must be "sum" or "gear"')
     found, _ = diagnose_with_stiffness(
         design,
         Path(path),

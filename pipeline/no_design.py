@@ -21,11 +21,11 @@ class NoDesignError(FlexsplineError, TypeError):
 
 
 def require_design(given: object) -> None:
-    """Refuse what is no design.
+    """Refuse what is not a design, and one made without the checks of `load_design`: by `Design(…)`, say.
 
     Raises
     ------
-    NoDesignError
+    NoDesignError, DesignError
 
     Examples
     --------
@@ -36,6 +36,8 @@ def require_design(given: object) -> None:
     design: "cup.toml" is a name; load the design first: flexspline.load_design("cup.toml")
     """
     from flexspline.geometry.design import Design  # loads pydantic
+    from flexspline.geometry.load import design_from
 
     if not isinstance(given, Design):
         raise NoDesignError(given)
+    design_from(given.tables)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import pickle
 import re
 import subprocess
 import sys
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pytest
 from example_files import EXAMPLES
 from finished_run import FinishedRun
@@ -162,6 +164,44 @@ def test_changed_is_a_new_design() -> None:
     longer = design.changed({"flexspline.length_mm": 35.0, "shaft.segment[1].length_mm": 12.0})
     assert (longer.flexspline.length_mm, longer.shaft.segment[1].length_mm) == (35.0, 12.0)
     assert design.flexspline.length_mm != 35.0
+
+
+def test_a_design_that_no_file_may_hold_is_not_solved() -> None:
+    """`Design(…)` and pydantic's copies look at one key at a time."""
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    tables = design.tables
+    tables["flexspline"]["wall_thickness_mm"] = 5.0  # the ring is 0.55 thick
+    thin = design.flexspline.model_copy(update={"wall_thickness_mm": -0.5})
+    for wrong in (flexspline.Design(**tables), design.model_copy(update={"flexspline": thin})):
+        with pytest.raises(flexspline.FlexsplineError, match="thickness_mm"):
+            flexspline.stiffness(wrong)
+
+
+@pytest.mark.parametrize("value", [np.int64(4), np.float64(4.0), np.array(4), 4.0])
+def test_numpy_s_numbers_are_numbers(value: object) -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    changed = design.changed({"flexspline.bolt_count": value})
+    assert changed == design.changed({"flexspline.bolt_count": 4})
+    with pytest.raises(
+        flexspline.FlexsplineError, match=r"shaft\.keyway\.width_mm = 4\.?0?: no such key"
+    ):
+        design.changed({"shaft.keyway.width_mm": value})
+
+
+def test_a_diagnosis_is_shown_in_short_and_goes_to_another_process() -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    found = flexspline.diagnose(design, SWEEP, K_b=31312, K_e=43275)
+    assert len(repr(found)) < 10_000  # a notebook prints it
+    there = pickle.loads(pickle.dumps(found))
+    assert there.verdict == found.verdict
+    torque, warm = [1.0, -1.0], {"temperature_C": [30.0, 30.0]}
+    assert np.array_equal(
+        there.model.angle_arcsec(torque, **warm), found.model.angle_arcsec(torque, **warm)
+    )
+    with pytest.raises(
+        flexspline.FlexsplineError, match='against = "curve": must be "sum" or "gear"'
+    ):
+        flexspline.diagnose(design, SWEEP, 31312, 43275, against="curve")
 
 
 def test_lift_off_lies_between_the_seat_held_and_the_rim_free() -> None:

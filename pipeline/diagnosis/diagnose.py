@@ -18,7 +18,7 @@ The rules of the verdict for the first three are in `decision.py`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -63,13 +63,13 @@ class Diagnosis:
     """
 
     design: Design
-    measurement: Sweep | EndPoints | Specimens
+    measurement: Sweep | EndPoints | Specimens = field(repr=False)
     prediction: Prediction
     outcome: DiagnosisOutcome
     model: ExtendedModel | None = None
-    sweep: SweepAnalysis | None = None
-    end_points: EndPointAnalysis | None = None
-    specimens: SpecimenAnalysis | None = None
+    sweep: SweepAnalysis | None = field(default=None, repr=False)
+    end_points: EndPointAnalysis | None = field(default=None, repr=False)
+    specimens: SpecimenAnalysis | None = field(default=None, repr=False)
     gear_inputs: GearInputs | None = None
     given: tuple[str, ...] = ()
 

@@ -45,12 +45,17 @@ class Candidate:
         return frozenset(c.id for i in self.terms if (c := evidence.terms[i].cause))
 
 
+def any_term(term: Regressor) -> bool:
+    """Lets every term in."""
+    return True
+
+
 @dataclass
 class Search:
     """A beam search over sets of terms of one race; remembers every set that it tried."""
 
     evidence: GaussianEvidence
-    allowed: Callable[[Regressor], bool] = lambda term: True
+    allowed: Callable[[Regressor], bool] = any_term
     best: dict[frozenset[str], Candidate] = field(default_factory=dict)
     """Best candidate of each set of owners."""
     tried: list[Candidate] = field(default_factory=list)
