@@ -249,6 +249,13 @@ class Design(DesignTable):
         """As a design file's tables, plain values without what is absent; new ones each time."""
         return self.model_dump(mode="json", exclude_none=True)
 
+    @property
+    def toml(self) -> str:
+        """Text of a design file that loads as exactly this design, every key with its meaning."""
+        from flexspline.geometry.template import design_text  # which describes designs
+
+        return design_text(self)
+
     def changed(self, values: Mapping[str, object]) -> Design:
         """A new, checked design with other values at some dotted keys; array elements count from 0.
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from flexspline.geometry import ranges
+from flexspline.geometry.errors import DesignError
 
 SMALLEST_MM = ranges.LENGTH_mm.low
 
@@ -46,3 +47,8 @@ class DesignTable(BaseModel):
     """A table of the design file: unknown keys and other types are refused, values never change."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise DesignError(
+            name, value, "a design does not change; Design.changed({key: value}) makes another one"
+        )

@@ -34,6 +34,8 @@ def read_input(path: Path | str, largest_bytes: int, what: str) -> bytes:
     ------
     InputFileError : no such file, not a regular file, too large, not readable.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise InputFileError(f"a {type(path).__name__} is not the name of a file")
     if str(path) == STDIN:
         raise InputFileError("standard input is not read; name a file")
     try:

@@ -47,6 +47,10 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     ------
     DesignError : no such key, a value out of range, or impossible geometry.
     """
+    if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
+        raise DesignError(
+            "values", values, 'must be a table such as {"flexspline.length_mm": 35.0}'
+        )
     tables = design.tables
     for key, value in values.items():
         table, last = _reach(tables, key, value)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part_name import PART_NAMES, PartName
-from flexspline.pipeline.no_design import require_design
+from flexspline.pipeline.given import file_name, require_design
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 
 if TYPE_CHECKING:
@@ -76,7 +76,9 @@ def stiffness(
 
 
 def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
-    """Displacement and von Mises stress of a load case on tetrahedra; `peak` is the largest stress.
+    """Displacement and von Mises stress of a load case on tetrahedra of a sector of the part.
+
+    `peak` is the largest stress outside of what it excludes: at sharp edges stress only grows with the mesh.
 
     Parameters
     ----------
@@ -216,7 +218,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     from flexspline.pipeline.study.load import load_study
     from flexspline.pipeline.study.run import trial_store_of, whole_study
 
-    path = Path(path)
+    path = file_name(path, "study")
     asked = load_study(path)
     folder = Path(out) if out is not None else default_folder(path)
     store = trial_store_of(asked, folder)

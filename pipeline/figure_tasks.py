@@ -38,7 +38,7 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _TaskResult:
     """Of one task; what a copy of this process remembers of it, and the seconds of its stages there."""
 
     figures: Figures
@@ -57,7 +57,7 @@ class FigureTasks:
         """`solved` is told each part after its K, by the thread that found it; what another process found
         it is told at the end."""
         self._context, self._solved = context, solved
-        self._tasks: list[Callable[[], _Found]] = []
+        self._tasks: list[Callable[[], _TaskResult]] = []
         self._untold: dict[str, PartModel] = {}
         self._process = os.getpid()
 
@@ -104,12 +104,12 @@ class FigureTasks:
     def _tell(self, name: str) -> None:
         self._solved(self._untold.pop(name))
 
-    def _found(self, make: Callable[[], Figures]) -> _Found:
+    def _found(self, make: Callable[[], Figures]) -> _TaskResult:
         if os.getpid() == self._process:
-            return _Found(make(), {}, {})
+            return _TaskResult(make(), {}, {})
         passing, seconds = {*self._context.cache.passing}, dict(self._context.progress.seconds)
         figures = make()
-        return _Found(
+        return _TaskResult(
             figures,
             {k: v for k, v in self._context.cache.passing.items() if k not in passing},
             {k: s - seconds.get(k, 0.0) for k, s in self._context.progress.seconds.items()},

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.errors import DesignError
-from flexspline.pipeline.no_design import require_design
+from flexspline.pipeline.given import file_name, require_design
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -69,7 +69,7 @@ def diagnose(
         raise DesignError("against", against, 'must be "sum" or "gear"')
     found, _ = diagnose_with_stiffness(
         design,
-        Path(path),
+        file_name(path, "measured data"),
         (K_b, K_e),
         ("K_b = ", "K_e = "),
         context,

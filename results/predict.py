@@ -58,7 +58,9 @@ def predict(
     """
     from flexspline.pipeline.diagnosis.model.model_file import read_model_file
     from flexspline.pipeline.diagnosis.model.predict import predict_file
+    from flexspline.pipeline.given import file_name
     from flexspline.results.diagnosis.predicted import PredictedWithWarnings
 
-    found = predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)
+    read = read_model_file(file_name(model, "model"))
+    found = predict_file(read, file_name(path, "measured data"), counts_per_turn)
     return PredictedWithWarnings(**vars(found))

@@ -17,6 +17,7 @@ from example_files import EXAMPLES
 from finished_run import FinishedRun
 
 import flexspline
+from flexspline.geometry.sanity import warnings
 
 ROOT = Path(__file__).parents[1]
 NAMES = {
@@ -117,6 +118,14 @@ def test_wrong_words_are_refused_in_one_line() -> None:
         lambda: flexspline.diagnose(design, SWEEP, K_b="3e4", K_e=4e4),
         lambda: flexspline.diagnose(design, "no such file.csv"),
         lambda: flexspline.study("no such study.toml"),
+        lambda: flexspline.study(EXAMPLES / "studies" / "grid.toml", out="/dev/null/out"),
+        lambda: flexspline.load_design(None),
+        lambda: flexspline.study(None),
+        lambda: flexspline.diagnose(design, {"torque_Nm": [1.0]}),
+        lambda: flexspline.backlash(design, K_b=True, K_e=4e4),
+        lambda: design.changed(None),
+        lambda: design.changed({3: 4.0}),
+        lambda: setattr(design.flexspline, "length_mm", 25.0),
         lambda: design.changed({"flexspline.wall": 0.4}),
         lambda: design.changed({"flexspline.bolt_count": "six"}),
         lambda: flexspline.Design(),
@@ -157,6 +166,8 @@ def test_a_model_answers_a_history_without_rows() -> None:
     design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
     model = flexspline.diagnose(design, SWEEP, K_b=31377, K_e=43275).model
     assert model.angle_arcsec([], temperature_C=[]).shape == (0,)
+    one = model.angle_arcsec(1.0, temperature_C=25.0)
+    assert one == model.angle_arcsec([1.0], temperature_C=[25.0])
 
 
 def test_changed_is_a_new_design() -> None:
@@ -202,6 +213,21 @@ def test_a_diagnosis_is_shown_in_short_and_goes_to_another_process() -> None:
         flexspline.FlexsplineError, match='against = "curve": must be "sum" or "gear"'
     ):
         flexspline.diagnose(design, SWEEP, 31312, 43275, against="curve")
+
+
+def test_what_is_unusual_is_a_warning_where_the_function_was_called() -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    odd = design.changed({"flexspline.bolt_count": 5})  # the shaft has six
+    with pytest.warns(UserWarning, match="bolt") as caught:
+        flexspline.backlash(odd, K_b=3e4, K_e=4e4)
+    assert [str(w.message) for w in caught] == list(warnings(odd))
+    assert {w.filename for w in caught} == {__file__}
+
+
+def test_a_design_s_text_is_a_file_of_it(tmp_path: Path) -> None:
+    design = flexspline.load_design(EXAMPLES / "hat-25.toml").changed({"load.torque_Nm": 3.0})
+    (tmp_path / "mine.toml").write_text(design.toml, encoding="utf-8")
+    assert flexspline.load_design(tmp_path / "mine.toml") == design
 
 
 def test_lift_off_lies_between_the_seat_held_and_the_rim_free() -> None:

@@ -91,7 +91,13 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
     url = study.file.run.storage
     own = folder / "study.db"
     if not url:
-        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            reason = fault.strerror or str(fault)
+            raise TrialStoreError(
+                f"{folder}: cannot be made ({reason})", "name another folder"
+            ) from None
     directions = list(study.file.objective.values()) or ["minimize"]
     try:
         given = url or f"sqlite:///{own.resolve()}"

@@ -73,7 +73,7 @@ def test_a_dataclass_from_elsewhere_does_not_come_back() -> None:
     class Own:
         x: int
 
-    with pytest.raises(ValueError, match="no dataclass of this package"):
+    with pytest.raises(ValueError, match="not a dataclass of this package"):
         unpacked(packed(Own(1)))
 
 

@@ -115,11 +115,9 @@ def _channel(
     name: str, values: Sequence[float] | np.ndarray, torque: Sequence[float] | np.ndarray
 ) -> np.ndarray:
     """The values as numbers (n,), as many as torques."""
-    found = np.asarray(values, float)
-    if found.ndim != 1 or len(found) != len(torque):
-        raise ChannelError(
-            name, f"has the shape {found.shape}, the torque has {len(torque)} values"
-        )
+    found, rows = np.atleast_1d(np.asarray(values, float)), np.size(torque)
+    if found.ndim != 1 or len(found) != rows:
+        raise ChannelError(name, f"has the shape {found.shape}, the torque has {rows} values")
     if not np.isfinite(found).all():
         raise ChannelError(name, "holds a value that is not finite")
     return found

@@ -71,7 +71,7 @@ def test_folding_takes_unfolded_nodes_back() -> None:
 
 
 def test_unfolding_refuses_a_sector_that_does_not_fit() -> None:
-    with pytest.raises(ValueError, match="no multiple"):
+    with pytest.raises(ValueError, match="not a multiple"):
         unfolded(small(), 100.0)
 
 

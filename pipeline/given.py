@@ -1,8 +1,10 @@
-"""What is given in place of a design: a path, say, where a function wants the design itself."""
+"""What `import flexspline` is given: a design, not a path or an array, and the name of a file."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from warnings import warn
 
 from flexspline.geometry.errors import FlexsplineError, short
 
@@ -20,8 +22,39 @@ class NoDesignError(FlexsplineError, TypeError):
         super().__init__(f"design: {said}")
 
 
+class NoFileNameError(FlexsplineError, TypeError):
+    """A function was given something else than the name of a file."""
+
+
+def file_name(given: object, what: str) -> Path:
+    """A path where one is given; `what` kind of file it should name.
+
+    Raises
+    ------
+    NoFileNameError
+
+    Examples
+    --------
+    >>> try:
+    ...     file_name({"torque_Nm": [1.0]}, "measured data")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    measured data: a dict is not the name of a file
+    """
+    if not isinstance(given, str | os.PathLike):
+        kind = type(given).__name__
+        raise NoFileNameError(f"{what}: a {kind} is not the name of a file")
+    return Path(given)
+
+
+class DesignWarning(UserWarning):
+    """What is unusual in a design, in the commands' words."""
+
+
 def require_design(given: object) -> None:
     """Refuse what is not a design, and one made without the checks of `load_design`: by `Design(…)`, say.
+
+    What is unusual in it is a `DesignWarning` at the line that called the function of `import flexspline`.
 
     Raises
     ------
@@ -37,7 +70,9 @@ def require_design(given: object) -> None:
     """
     from flexspline.geometry.design import Design  # loads pydantic
     from flexspline.geometry.load import design_from
+    from flexspline.geometry.sanity import warnings as unusual_in
 
     if not isinstance(given, Design):
         raise NoDesignError(given)
-    design_from(given.tables)
+    for unusual in unusual_in(design_from(given.tables)):
+        warn(unusual, DesignWarning, stacklevel=3)
