@@ -93,8 +93,9 @@ def _summary(content: ReportContent) -> Iterable[Block]:
     ]
     for row in rest:
         if row["symbol"] == wave:
-            beside = row["alarm"] or "von Mises"
-            tiles.append(Tile("Peak stress, wave generator", row["value"], row["unit"], beside))
+            tiles.append(
+                Tile("Peak stress, wave generator", row["value"], row["unit"], row["tile"])
+            )
     yield Tiles(tuple(tiles))
     yield Paragraph(totals_and_terms(content))
 

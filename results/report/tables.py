@@ -9,7 +9,7 @@ from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import as_stated, spread_text
 from flexspline.results.limit_words import beside_figure, stiffness_notes
 from flexspline.results.numbers import beyond, grouped, with_power
-from flexspline.results.peaks import border_note, limit_note
+from flexspline.results.peaks import BORDER, border_note, limit_note
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
@@ -152,6 +152,10 @@ def _stress_rows(content: ReportContent) -> list[PrintedRow]:
             rows.append(
                 _row(entry, peak.mises_MPa, "")
                 | {"note": "; ".join(said), "alarm": "; ".join(passed)}
+                | {
+                    "tile": "; ".join(passed)
+                    or (BORDER if peak.at_excluded_border else "von Mises")
+                }
             )
     return rows
 

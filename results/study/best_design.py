@@ -13,8 +13,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
 from flexspline.results.file_names import BEST_DESIGN
 from flexspline.results.limit_words import passed_line
-from flexspline.results.study.labels import at_border
-from flexspline.results.study.record import LISTED_DESIGNS
+from flexspline.results.study.labels import LISTED_DESIGNS, at_border
 
 
 def write_best_design(folder: Path, result: StudyResult) -> Path | None:

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Mapping
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
-from flexspline.results.study.labels import at_border, entry
+from flexspline.results.study.labels import LISTED_DESIGNS, at_border, entry
 from flexspline.results.study.unbeaten import start_breaks
 
-COLUMNS = 5
-"""Designs side by side."""
 MARK = "†"
 """Beside a peak that hangs on the stress rule."""
 
@@ -35,6 +34,8 @@ def design_table(result: StudyResult) -> Iterable[Block]:
     heads = (*(first for _ in begun), *(_head(result, r) for r in chosen))
     yield Heading("The best designs" if result.study.file.objective else "The designs built")
     yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
+    if marked_figures(result):
+        yield Paragraph(f"{MARK} {BORDER}: {MEANING}.")
     if begun:
         told = "start: the design that the study began with, solved in the same way"
         yield Paragraph(f"{told}; it {breaks}." if breaks else f"{told}.")
@@ -53,8 +54,8 @@ def _chosen(result: StudyResult) -> tuple[Row, ...]:
     if result.about_scatter:
         return ()
     if result.study.file.objective:
-        return result.best(COLUMNS)
-    return result.built if len(result.built) <= COLUMNS else ()
+        return result.best(LISTED_DESIGNS)
+    return result.built if len(result.built) <= LISTED_DESIGNS else ()
 
 
 def _figures(result: StudyResult, chosen: tuple[Row, ...]) -> list[str]:

@@ -12,6 +12,8 @@ from flexspline.results.quantity import Quantity
 
 AT_BORDER, GUARANTEED = "_at_excluded_border", "_bounds_guaranteed"
 """Ends of the keys of a row's marks: numbers in the store, which holds nothing else."""
+LISTED_DESIGNS = 5
+"""The best ones, on the terminal and side by side in the report."""
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
 _UNSAID = ("flexspline", "gear", "bearing", "load", "material.flexspline")
 """Tables that a study's labels leave out."""

@@ -20,8 +20,7 @@ from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.sentences import sentence
 from flexspline.results.study.design_table import MARK, marked_figures
-from flexspline.results.study.labels import at_border, entry
-from flexspline.results.study.record import LISTED_DESIGNS
+from flexspline.results.study.labels import LISTED_DESIGNS, at_border, entry
 from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"

@@ -13,13 +13,10 @@ from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
 from flexspline.results.numbers import signed
 from flexspline.results.study.failures import FailureReason, causes, failure_lines
-from flexspline.results.study.labels import entry, published, valued
+from flexspline.results.study.labels import LISTED_DESIGNS, entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
 from flexspline.results.study.why import disagreement, incomplete, misses
-
-LISTED_DESIGNS = 5
-"""Best designs that the summary lists."""
 
 
 def summary(result: StudyResult) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from itertools import chain
 from pathlib import Path
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_together
 from flexspline.results.file_names import BEST_STRESS
@@ -25,11 +26,13 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, alarm, bold, plain, worded
+from flexspline.results.study.best_figure import DRAWN_DESIGNS
 from flexspline.results.study.best_stress import VIEW, BestStress
 from flexspline.results.study.design_table import design_table
 from flexspline.results.study.failures import TOLD, causes, untold
 from flexspline.results.study.labels import entry
 from flexspline.results.study.notes import notes
+from flexspline.results.study.question import question
 from flexspline.results.study.scatter_section import scatter_section
 from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
@@ -55,7 +58,7 @@ CAPTIONS = {
     "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
     "constraint allows.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
-    "best.png": "The best designs in section.",
+    "best.png": "{sections} in section, over the design that the study began with.",
     BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
@@ -97,6 +100,7 @@ def study_document(
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
+        *question(study),
         *design_table(result),
         *_why(result),
         *_verified(result),
@@ -122,9 +126,16 @@ def study_document(
 def _picture(name: str, result: StudyResult) -> Block:
     first = result.pareto[0].slot if name == BEST_STRESS else ""
     so_far = ", and the best so far" if result.feasible else "; none keeps to every constraint"
-    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first, best_so_far=so_far)
+    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(
+        first=first, best_so_far=so_far, sections=_sections(result)
+    )
     view = VIEW if name == BEST_STRESS else ""
     return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
+
+
+def _sections(result: StudyResult) -> str:
+    slots = [str(row.slot) for row in result.best(DRAWN_DESIGNS)]
+    return f"Design{'s' * (len(slots) > 1)} {listed(slots, 'designs')}"
 
 
 def _not_drawn(reason: str, result: StudyResult) -> Iterable[Block]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
 from flexspline.pipeline.study.influence import (
+    OpenEnd,
     binding,
     open_ends,
     own_influences,
@@ -14,7 +16,7 @@ from flexspline.pipeline.study.schema import Limit
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
 from flexspline.results.numbers import signed
-from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.labels import LISTED_DESIGNS, entry, valued
 
 STRONG_CORRELATION = 0.3
 """Rank correlation from which an influence is worth a sentence."""
@@ -62,14 +64,8 @@ def allowed(key: str, limit: Limit) -> str:
 
 def limits(result: StudyResult) -> list[str]:
     """Spans, constraints and designs that could not be built, which hold the best design back."""
-    said = []
+    said = _open_ends(result)
     for best in result.pareto[:1]:
-        for at in open_ends(result, best):
-            q = entry(at.key)
-            said.append(
-                f"Design {best.slot} lies at the {at.end} end of its span in {q.name} "
-                f"({q.with_unit(at.value)}): a wider span may hold a better one."
-            )
         for key in binding(result, best):
             q = entry(key)
             said.append(
@@ -83,6 +79,24 @@ def limits(result: StudyResult) -> list[str]:
                 f"Beside design {best.slot}, the next {q.name} of the grid, {q.with_unit(value)}, could not "
                 "be built or solved."
             )
+    return said
+
+
+def _open_ends(result: StudyResult) -> list[str]:
+    """Ends of spans at which the best design lies, of several objectives those in the table."""
+    at_end: dict[OpenEnd, list[str]] = {}
+    one = len(result.study.file.objective) == 1
+    for best in result.pareto[:1] if one else result.best(LISTED_DESIGNS):
+        for end in open_ends(result, best):
+            at_end.setdefault(end, []).append(str(best.slot))
+    said = []
+    for end, slots in at_end.items():
+        q, many = entry(end.key), len(slots) > 1
+        who = f"Designs {listed(slots, 'designs')} lie" if many else f"Design {slots[0]} lies"
+        said.append(
+            f"{who} at the {end.end} end of the span in {q.name} ({q.with_unit(end.value)}): a wider span "
+            "may hold a better one."
+        )
     return said
 
 

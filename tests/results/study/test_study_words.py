@@ -17,6 +17,7 @@ from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import entry, valued
 from flexspline.results.study.notes import border_warnings, notes, unsettled, wide_bounds
+from flexspline.results.study.question import question
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 from flexspline.results.study.sensitivity import lines
@@ -126,7 +127,34 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
         STUDY.replace("300.0", "900.0").replace("90.0", "900.0").replace("max = 0.5", "max = 0.48")
     )
     (said,) = limits(result_of(text))
-    assert "upper end of its span in wall thickness" in said
+    assert "upper end of the span in wall thickness" in said
+
+
+def test_the_report_repeats_what_is_asked() -> None:
+    text = STUDY.replace("min = 0.3, max = 0.5", "min = 0.3, max = 0.5, steps = 3").replace(
+        "[objective]", '[link]\n"flexspline.ring_thickness_mm" = { of = "flexspline.wall_thickness_mm", '
+        "plus = 0.15 }\n[objective]",
+    )  # fmt: skip
+    (table,) = (b for b in question(result_of(text).study) if isinstance(b, Table))
+    assert [tuple(cell.replace("\u202f", " ") for cell in row) for row in table.rows] == [
+        ("varied", "wall thickness", "0.3 to 0.5 mm, 3 values"),
+        ("follows", "ring thickness", "wall thickness + 0.15 mm"),
+        ("sought", entry(K).name, "as large as possible"),
+        ("allowed", entry(STRESS).name, "at most 300 MPa"),
+        ("allowed", entry(TOTAL).name, "at most 90.0 arcsec"),
+    ]
+
+
+def test_of_a_front_every_design_at_an_end_is_named() -> None:
+    """Stiffness rises with the wall and so does mass: both ends of the front's span are named."""
+    text = (
+        STUDY.replace("300.0", "900.0")
+        .replace("90.0", "900.0")
+        .replace('"maximize"', f'"maximize"\n"{STRESS}" = "minimize"')
+    )
+    result = result_of(text.replace("max = 0.5", "max = 0.48"))
+    said = [line for line in limits(result) if "end of the span in wall thickness" in line]
+    assert [line.split(" lies")[0] for line in said] == ["Design 9", "Design 0"]
 
 
 def test_a_neighbour_in_the_grid_that_could_not_be_built_is_said() -> None:
@@ -274,7 +302,8 @@ def test_few_designs_without_an_objective_have_their_figures_in_the_report() -> 
     failed = Outcome(faults=("too thick",))
     rows = (result.rows[0], *(replace(r, outcome=failed) for r in result.rows[1:]))
     document = study_document(flagged(replace(result, rows=rows)), ())
-    table = next(b for b in document.blocks if isinstance(b, Table))
+    asked, table, *_ = (b for b in document.blocks if isinstance(b, Table))
+    assert [row[0] for row in asked.rows] == ["varied", "allowed", "allowed"]
     assert [c.head for c in table.columns] == ["", "design 0 (not allowed)"]
     assert [row[1] for row in table.rows] == ["0.3", "30\u202f000", "310 †", "85.0"]
     assert "The designs built" in str(payload_of(document))
