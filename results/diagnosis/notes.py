@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -132,10 +132,10 @@ def record_notes(sweep: Sweep) -> list[str]:
     return found
 
 
-def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> list[str]:
+def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
-    found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
+    found += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
     found += _rounding_notes(explained)
     found += _noise_notes(explained)
     found += lag_notes(explained.identified)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
-from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
+from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER, RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate_on_ramps
 from flexspline.results.diagnosis.channels import channel_words
 
@@ -20,7 +24,7 @@ WITHOUT = {
 """What a channel that was not recorded leaves open."""
 
 
-def unseen_notes(history: History, band_Nm: float) -> list[str]:
+def unseen_notes(history: History, band_Nm: float, causes: Iterable[NamedCause] = ()) -> list[str]:
     """Sides, directions, rates and channels that the record lacks; `band_Nm` is the gap's crossing."""
     found = []
     torque = history.torque_Nm
@@ -35,10 +39,13 @@ def unseen_notes(history: History, band_Nm: float) -> list[str]:
             "torque never returns: the record does not show friction; sweep back to zero as well"
         )
     elif history.time_s is not None and at_one_rate_on_ramps(history):
-        found.append(
-            "all cycles run at one rate: a lag makes the same loop as friction; repeat one at "
-            f"1/{FASTER:g} of the rate"
+        told = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
+        lag = (
+            "only the form of its loop tells friction from a lag"
+            if told
+            else "a lag makes the same loop as friction"
         )
+        found.append(f"all cycles run at one rate: {lag}; repeat one at 1/{FASTER:g} of the rate")
     found += [
         f"{channel_words(channel)} was not recorded: {leaves_open}"
         for channel, leaves_open in WITHOUT.items()

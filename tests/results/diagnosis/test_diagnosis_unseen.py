@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from histories import sweep
 
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.unseen import unseen_notes
 
 WHOLE = sweep()
@@ -41,3 +43,19 @@ def test_channels_that_were_not_recorded_are_named() -> None:
     bare = replace(WHOLE, time_s=None, temperature_C=None, input_angle_deg=None)
     for name in ("time", "temperature", "wave generator angle"):
         assert f"{name} was not recorded" in said(bare)
+
+
+@pytest.mark.parametrize(
+    ("alternatives", "said"),
+    [
+        ((), "only the form of its loop tells friction from a lag"),
+        (("rate_dependence",), "a lag makes"),
+    ],
+)
+def test_at_one_rate_the_note_says_what_the_verdict_says(
+    alternatives: tuple[str, ...], said: str
+) -> None:
+    found = NamedCause("friction_hysteresis", 0.99, alternatives, 5.0, 0.1, "arcsec", 20.0, 2.0)
+    ramps = sweep(cycles=4, rows=120, hold=0)
+    (line,) = (n for n in unseen_notes(ramps, 0.05, (found,)) if "one rate" in n)
+    assert said in line
