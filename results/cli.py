@@ -74,16 +74,17 @@ def run(
 ) -> None:
     """Everything: stiffness, stress, backlash, whole gear, report."""
     with answered(design, RESUMES):
-        from flexspline.pipeline.diagnosis.model.model_file import read_model_file
+        measured = None
+        if model is not None:
+            from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
-        measured = read_model_file(model) if model is not None else None
+            measured = read_model_file(model)
         job = begin(design, out, RUN)
         if measured is not None:
             from flexspline.results.diagnosis.model_notes import model_warnings
 
             tell_all(model_warnings(measured, job.design))
         from flexspline.pipeline.analysis import run as run_chain
-        from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
         from flexspline.pipeline.second_process import second_process
         from flexspline.results.gear_words import gear_notes
         from flexspline.results.pictures import RunDrawings, write_pictures
@@ -100,6 +101,8 @@ def run(
                 tell(f"note: {line}")
             extended = None
             if measured is not None:
+                from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+
                 torque = job.design.load.torque_Nm
                 extended = extended_backlash(result.backlash, measured.model, torque)
             name = measured.path.name if measured else ""

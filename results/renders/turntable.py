@@ -25,6 +25,8 @@ LEVELS = 2047
 """Of stress, from 0 to the peak: eight to a colour of the scale."""
 _MARGIN = 1.01
 """Half the picture over the radius of the part's bounding sphere: nothing is cut off, however turned."""
+ZLIB_LEVEL = 4
+"""Whole numbers of close places: 9 takes two to three times as long and 1 to 4 % more room."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,7 @@ def _scene(drawn: Drawn, skin: np.ndarray, triangles: np.ndarray, mises: np.ndar
         "triangles": triangles,
         **lines,
     }
-    return base64.b64encode(zlib.compress(packed(head, arrays), 9)).decode()
+    return base64.b64encode(zlib.compress(packed(head, arrays), ZLIB_LEVEL)).decode()
 
 
 def _camera(points: np.ndarray, view: View) -> dict[str, Any]:
