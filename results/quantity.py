@@ -9,6 +9,8 @@ from flexspline.results.numbers import THIN, decimals_for, figures_text, grouped
 
 PrintKind = Literal["number", "count", "bounds", "text"]
 STIFFNESS_UNIT = "N·m/rad"
+LEAST_IN_kg = 10_000.0
+"""Grams from which a mass is printed in kg."""
 MOST_DECIMALS = 6
 """Digits behind the point: ends that agree so far are printed alike."""
 
@@ -74,7 +76,9 @@ class Quantity:
         return text if len(text) <= letters else with_power(value, 3)
 
     def with_unit(self, value: float) -> str:
-        """The number and its unit."""
+        """The number and its unit; kilograms for many grams."""
+        if self.unit == "g" and value >= LEAST_IN_kg:
+            return f"{figures_text(value / 1000, self.digits)}{THIN}kg"
         return f"{self.text(value)}{THIN}{self.unit}" if self.unit else self.text(value)
 
     def range_text(self, low: float, high: float) -> str:

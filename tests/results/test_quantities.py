@@ -82,6 +82,8 @@ def test_grouping(value, decimals, text):
 
 def test_significant_digits_and_units():
     assert quantity("torque_peak_mises_MPa").with_unit(451.27) == f"451{THIN}MPa"
+    assert quantity("shaft_mass_g").with_unit(192_445.0) == f"192.4{THIN}kg"
+    assert quantity("shaft_mass_g").with_unit(50.693) == f"50.69{THIN}g"
     assert quantity("torque_peak_mises_MPa").text(3.21829) == "3.22"
     assert quantity("K_e_Nm_per_rad").text(893.1249) == "893.12"
 
