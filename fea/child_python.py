@@ -1,10 +1,15 @@
-"""The command that starts a child of this Python, in which the same modules are found."""
+"""Children of this process: the command that starts one with the same modules, and their end."""
 
 from __future__ import annotations
 
+import ctypes
 import json
+import os
+import signal
 import sys
 
+PR_SET_PDEATHSIG = 1
+"""Of Linux's prctl(2)."""
 _START = """import json, sys
 sys.path[:] = json.loads(sys.argv.pop(1))
 from {module} import {function}
@@ -19,3 +24,12 @@ def child_command(module: str, function: str, *arguments: str) -> list[str]:
     """
     start = _START.format(module=module, function=function)
     return [sys.executable, "-P", "-c", start, json.dumps(sys.path), *arguments]
+
+
+def end_with(parent: int) -> None:
+    """End this process when its parent is killed, where the system tells it: on Linux."""
+    if sys.platform != "linux":
+        return
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it was gone before the line above
+        sys.exit("the program that asked for this is gone")

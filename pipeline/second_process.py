@@ -17,6 +17,7 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from flexspline.fea.child_python import end_with
 from flexspline.fea.threads import one_thread
 from flexspline.fea.turns import shared_turns
 
@@ -65,7 +66,7 @@ def results_of(
             open_files.enter_context(shared_turns())
             here, there = copying.Pipe(duplex=False)
             second = copying.Process(
-                target=_send_results, args=(there, numbers, tasks), daemon=True
+                target=_send_results, args=(there, numbers, tasks, os.getpid()), daemon=True
             )
             second.start()
         except OSError:  # no process or open file more is allowed, or no memory
@@ -111,10 +112,13 @@ def _work(numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> dict[int,
     return {number: tasks[number]() for number in numbers}
 
 
-def _send_results(to: Connection, numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> None:
+def _send_results(
+    to: Connection, numbers: Iterable[int], tasks: Sequence[Callable[[], T]], parent: int
+) -> None:
     # Ctrl-C reaches both; the first process ends the second
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
+        end_with(parent)
         to.send(_work(numbers, tasks))
     except BaseException:
         os._exit(1)  # the first process meets the fault itself

@@ -6,12 +6,9 @@ parent's process number, without which it does not go on.
 
 from __future__ import annotations
 
-import ctypes
 import faulthandler
 import os
-import signal
 import subprocess
-import sys
 import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -20,7 +17,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from flexspline.fea.child_python import child_command
+from flexspline.fea.child_python import child_command, end_with
 from flexspline.fea.errors import MesherError, MesherTimeError
 
 STOP_ENERGY = 10.0
@@ -122,24 +119,13 @@ def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
     return np.einsum("ij,ij->i", np.cross(a, b), c) / 6
 
 
-PR_SET_PDEATHSIG = 1
-"""Of Linux's prctl(2)."""
 GRACE_S = 30.0
 """How long beyond the time limit a child goes on whose parent did not end it."""
 
 
-def _not_without(parent: int) -> None:
-    """End this process when its parent is killed: at once on Linux, elsewhere by the time limit."""
-    if sys.platform != "linux":
-        return
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it was gone before the line above
-        sys.exit("the program that asked for this mesh is gone")
-
-
 def mesh_in_child(given: str, made: str, parent: str) -> None:
     """What the child does: a mesh of the file `given` into the file `made`, for the process `parent`."""
-    _not_without(int(parent))
+    end_with(int(parent))  # elsewhere than on Linux by the time limit
     import pytetwild
 
     with np.load(given) as g:

@@ -165,6 +165,28 @@ def test_one_value_is_made_once_by_both(tmp_path: Path) -> None:
     assert (tmp_path / "made").read_text() == "once\n"
 
 
+@linux_with_two_processors
+def test_a_copy_ends_with_the_process_that_made_it(tmp_path: Path) -> None:
+    program = tmp_path / "two.py"
+    program.write_text(
+        "import os, time\n"
+        "from flexspline.pipeline.second_process import results_of, second_process\n"
+        "def task():\n"
+        "    os.write(1, b'%d\\n' % os.getpid())\n"
+        "    time.sleep(60)\n"
+        "with second_process():\n"
+        "    results_of([task, task])\n"
+    )
+    with subprocess.Popen([sys.executable, program], stdout=subprocess.PIPE, text=True) as ran:
+        assert ran.stdout is not None
+        copy = ({int(ran.stdout.readline()) for _ in range(2)} - {ran.pid}).pop()
+        ran.kill()
+    deadline = time.monotonic() + 10
+    while Path(f"/proc/{copy}/exe").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not Path(f"/proc/{copy}/exe").exists()
+
+
 class _Unreadable(ValueError):
     """It can be sent, but not made again."""
 
