@@ -86,9 +86,9 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         )
     except TooFewRowsError:
         return None
-    nats = guess.nats
     if not _seen(found):
         return None
+    nats = guess.nats if _is_guessed(found, guess.friction_Nm) else 0.0
     if nats < SURE_NATS + _unnamed_nats(found):
         plain = run_race(prepared)
         gain = gained(found, plain)
@@ -108,6 +108,14 @@ def _seen(found: ExplainedSweep) -> bool:
     ahead = found.prepared.ahead
     assert ahead is not None
     return ahead.amplitudes[0] > UNSEEN_SIGMAS * torque_noise_Nm(found.prepared.rig.history)
+
+
+def _is_guessed(found: ExplainedSweep, friction_Nm: float) -> bool:
+    """Whether the race has the friction that was guessed, of whose place the guess is sure: a gap that moves
+    between cycles may have looked like another."""
+    ahead = found.prepared.ahead
+    assert ahead is not None
+    return abs(float(np.log(ahead.amplitudes[0] / friction_Nm))) < GUESS_LOG
 
 
 def _unnamed_nats(found: ExplainedSweep) -> float:

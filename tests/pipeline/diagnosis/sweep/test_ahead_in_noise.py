@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hidden.adapter import diagnose
+from hidden.cases import draw_case
 from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -45,3 +47,10 @@ def test_a_guess_that_ends_within_the_torque_s_noise_is_none(
     assert torque_noise_Nm(prepared.rig.history) == pytest.approx(NOISE_Nm, rel=0.2)
     found = ahead_race.with_friction_ahead(prepared)
     assert (found is not None and found.ahead is not None) == seen
+
+
+@pytest.mark.long
+def test_a_gap_that_swings_with_the_temperature_is_no_friction_ahead() -> None:
+    """The first guess was sure of 13 N·m, and the race found 5: what it was sure of was not there."""
+    found = diagnose(draw_case(11320001, 203))
+    assert [c["id"] for c in found["causes"]] == ["thermal_clearance"]
