@@ -88,8 +88,9 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         return None
     if not _seen(found):
         return None
-    nats = guess.nats if _is_guessed(found, guess.friction_Nm) else 0.0
-    if nats < SURE_NATS + _unnamed_nats(found):
+    nats = guess.nats
+    sure = nats >= SURE_NATS + _unnamed_nats(found)
+    if not (sure and _is_guessed(found, guess.friction_Nm)):
         plain = run_race(prepared)
         gain = gained(found, plain)
         if (
@@ -97,9 +98,9 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         ):  # else the guess is surer than of any shifted reading
             plain = with_torque_offset(plain)
             gain = gained(found, plain)
-        if gain < AHEAD_NATS:
+        if gain < (-AHEAD_NATS if sure else AHEAD_NATS):
             return plain
-        nats = gain
+        nats = nats if sure else gain
     return replace(found, ahead=FoundAhead(std, nats))
 
 
