@@ -1,4 +1,4 @@
-"""docs/benchmarks.md from results.json: `python benchmarks/page.py` writes it anew."""
+"""docs/benchmarks.md from results.json: `python benchmarks/page.py` writes it again."""
 
 from __future__ import annotations
 

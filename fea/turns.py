@@ -2,31 +2,48 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
+from functools import cache
+from pathlib import Path
 from threading import RLock
 
-_FILES: list[int] = []
-"""File descriptor of the file on which processes lock a turn's place, where turns are shared."""
+_FOLDERS: list[Path] = []
+"""The last one is shared with copies of this process, with turns by locks on places of one file."""
 
 
 @contextmanager
 def shared_turns() -> Iterator[None]:
-    """While open, turns are shared with copies of this process that are made meanwhile.
+    """While open, turns are shared with copies of this process that are made meanwhile, and so is a folder.
 
-    By locks on places of a file, which the system takes from a process that ends.
+    By locks on places of a file in memory, which the system takes from a process that ends.
 
     Raises
     ------
-    OSError : no file more is allowed.
+    OSError : no file or folder more is allowed.
     """
-    with tempfile.TemporaryFile() as file:
-        _FILES.append(file.fileno())
-        try:
-            yield
-        finally:
-            _FILES.pop()
+    _file()
+    folder = Path(tempfile.mkdtemp(prefix="flexspline-shared-"))
+    _FOLDERS.append(folder)
+    try:
+        yield
+    finally:
+        _FOLDERS.pop()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def shared_folder() -> Path | None:
+    """Where copies of this process find what one of them made; None where turns are not shared."""
+    return _FOLDERS[-1] if _FOLDERS else None
+
+
+@cache
+def _file() -> int:
+    """Descriptor of the file, which stays open: closing it would take every turn of this process."""
+    return os.memfd_create("turns")  # of Linux, as copies of processes are
 
 
 class Turn(AbstractContextManager[None]):
@@ -34,13 +51,16 @@ class Turn(AbstractContextManager[None]):
 
     def __init__(self, place: int) -> None:
         self._place = place
-        self._lock, self._inside = RLock(), 0
+        self._lock, self._inside, self._of_process = RLock(), 0, False
 
     def __enter__(self) -> None:
         self._lock.acquire()
         try:
-            if not self._inside:
-                self._of_process(True)
+            if not self._inside and _FOLDERS:
+                import fcntl  # Windows has none
+
+                fcntl.lockf(_file(), fcntl.LOCK_EX, 1, self._place)
+                self._of_process = True
         except BaseException:  # interrupted while it waited for another process
             self._lock.release()
             raise
@@ -48,12 +68,11 @@ class Turn(AbstractContextManager[None]):
 
     def __exit__(self, *_: object) -> None:
         self._inside -= 1
-        if not self._inside:
-            self._of_process(False)
-        self._lock.release()
+        try:
+            if not self._inside and self._of_process:
+                import fcntl
 
-    def _of_process(self, taken: bool) -> None:
-        for file in _FILES[-1:]:
-            import fcntl  # Windows has none, and no copies of processes
-
-            fcntl.lockf(file, fcntl.LOCK_EX if taken else fcntl.LOCK_UN, 1, self._place)
+                self._of_process = False
+                fcntl.lockf(_file(), fcntl.LOCK_UN, 1, self._place)
+        finally:
+            self._lock.release()

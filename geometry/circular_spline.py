@@ -25,8 +25,8 @@ DEEPEST = 1.34
 SHALLOWEST = 0.1
 """Of m(z2 − z1)/2: teeth that touch within 13° of the major axis only."""
 
-DEPTH_ROUNDING_mm = 1e-3
-"""By which a depth that was written with four digits may pass its end."""
+DEPTH_ROUNDING = 1e-3
+"""Share by which a depth that was written with four digits may pass its end."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
             f"{2 * _root_radius(design):.4g} mm",
         )
     depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
-    low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + DEPTH_ROUNDING_mm)
+    low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + DEPTH_ROUNDING)
     if depth is not None and not low <= depth <= high:
         yield DesignError(
             "gear.working_depth_mm",

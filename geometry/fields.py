@@ -43,12 +43,16 @@ BoltCount = Annotated[int, Field(ge=0, le=200)]
 """The examples have 6 and 12; the end keeps a slip of the keyboard from asking for thousands."""
 
 
+UNCHANGED = "a design does not change; Design.changed({key: value}) makes another one"
+
+
 class DesignTable(BaseModel):
     """A table of the design file: unknown keys and other types are refused, values never change."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        raise DesignError(
-            name, value, "a design does not change; Design.changed({key: value}) makes another one"
-        )
+        raise DesignError(name, value, UNCHANGED)
+
+    def __delattr__(self, name: str) -> None:
+        raise DesignError(name, getattr(self, name, None), UNCHANGED)

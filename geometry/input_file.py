@@ -24,6 +24,31 @@ class InputFileError(FlexsplineError, ValueError):
     """A file that cannot be read; the message is one clause that says why."""
 
 
+class NoFileNameError(InputFileError, TypeError):
+    """A function was given something else than the name of a file."""
+
+
+def file_name(given: object, what: str = "") -> Path:
+    """A path where one is given; `what` kind of file it should name, for the error.
+
+    Raises
+    ------
+    NoFileNameError
+
+    Examples
+    --------
+    >>> try:
+    ...     file_name({"torque_Nm": [1.0]}, "measured data")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    measured data: a dict is not the name of a file
+    """
+    if not isinstance(given, str | os.PathLike):
+        words = f"a {type(given).__name__} is not the name of a file"
+        raise NoFileNameError(f"{what}: {words}" if what else words)
+    return Path(given)
+
+
 def read_input(path: Path | str, largest_bytes: int, what: str) -> bytes:
     """The bytes of a file; `what` it should be, and `largest_bytes` that such a file may have.
 
@@ -34,9 +59,7 @@ def read_input(path: Path | str, largest_bytes: int, what: str) -> bytes:
     ------
     InputFileError : no such file, not a regular file, too large, not readable.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise InputFileError(f"a {type(path).__name__} is not the name of a file")
-    if str(path) == STDIN:
+    if str(file_name(path)) == STDIN:
         raise InputFileError("standard input is not read; name a file")
     try:
         # a pipe is opened without waiting for who writes to it; Windows has neither

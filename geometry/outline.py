@@ -14,6 +14,8 @@ import numpy as np
 Point = tuple[float, float]
 SAME_mm = 1e-9
 """Points closer than this [mm] are one point."""
+SAME_rad = 1e-9
+"""Directions and angles closer than this are one: 1e-6 mm apart on the largest part."""
 ARC_RULE = np.polynomial.legendre.leggauss(24)
 """Gauss's points and weights, exact to rounding for what is swept by an arc below 180°."""
 SMOOTH_rad = 0.02

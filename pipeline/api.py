@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.input_file import file_name
 from flexspline.geometry.part_name import PART_NAMES, PartName
-from flexspline.pipeline.given import file_name, require_design
+from flexspline.pipeline.given import require_design
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def stiffness(
     from flexspline.pipeline.part_stiffness import part_stiffness
 
     require_design(design)
-    if part not in PART_NAMES:
+    if not isinstance(part, str) or part not in PART_NAMES:
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
     if case not in ("uniform", *RIM_CASES):
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
@@ -220,6 +221,6 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
 
     path = file_name(path, "study")
     asked = load_study(path)
-    folder = Path(out) if out is not None else default_folder(path)
+    folder = file_name(out, "out") if out is not None else default_folder(path)
     store = trial_store_of(asked, folder)
     return whole_study(asked, store, lambda progress: None, lambda line: None)

@@ -54,7 +54,7 @@ def require_stiffness(name: str, value: object) -> None:
     StiffnessValueError : no number, or one that is not positive and finite.
     """
     try:
-        good = isfinite(value) and value > 0 and not isinstance(value, bool)  # type: ignore[arg-type, operator]
+        good = isfinite(value) and value > 0 and not isinstance(value, bool | np.bool_)  # type: ignore[arg-type, operator]
     except (TypeError, OverflowError):  # text, or a whole number that no double holds
         good = False
     if not good:

@@ -10,14 +10,16 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import shutil
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
 
-from flexspline.fea.turns import Turn
+from flexspline.fea.turns import Turn, shared_folder
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
@@ -40,6 +42,25 @@ class Turns:
     def __getitem__(self, key: str) -> Turn:
         with self._own:
             return self._turns.setdefault(key, Turn(1 + int(key[:PLACE_DIGITS], 16)))
+
+
+def _shared(key: str) -> Path | None:
+    """Where a copy of this process looks for what is not for the disk, or failed."""
+    folder = shared_folder()
+    return None if folder is None else folder / key
+
+
+def _taken(path: Path) -> Any:
+    try:
+        return pickle.loads(path.read_bytes())
+    except Exception:  # not there, or not to be made again: then it is made here
+        return _MISSING
+
+
+def _given(path: Path | None, value: Any) -> None:
+    if path is not None:
+        with suppress(Exception):  # no room, or no pickle: the copy makes its own
+            path.write_bytes(pickle.dumps(value))
 
 
 @dataclass(frozen=True)
@@ -89,13 +110,21 @@ class Cache:
             raise self.failed[key]
         if key in self.passing:
             return self.passing[key], True
+        if (shared := _shared(key)) is not None and (found := _taken(shared)) is not _MISSING:
+            if isinstance(found, ComputationError):
+                self.failed[key] = found
+                raise found
+            self.passing[key] = found
+            return found, True
         try:
             value = make()
         except ComputationError as fault:
             self.failed[key] = fault
+            _given(shared, fault)
             raise
         if not (is_lasting(value) and self._written(path, key, value)):
             self.passing[key] = value
+            _given(shared, value)
         return value, False
 
     def has(self, stage: str, inputs: Mapping[str, Any]) -> bool:

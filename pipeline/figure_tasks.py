@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 from flexspline.fea.types import Shortfall, Stiffness, StressPeak
+from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.ellipse_peak import ellipse_peak, half_seat_peak
 from flexspline.pipeline.load_cases import rim_stiffness
@@ -39,10 +40,11 @@ class Figures:
 
 @dataclass(frozen=True)
 class _TaskResult:
-    """Of one task; what a copy of this process remembers of it, and the seconds of its stages there."""
+    """Of one task; what a copy of this process remembers by then, and the seconds of its stages there."""
 
     figures: Figures
     passing: dict[str, Any]
+    failed: dict[str, ComputationError]
     seconds: dict[str, float]
 
 
@@ -85,10 +87,11 @@ class FigureTasks:
             begun()
             with beside(self._context.progress, self._tasks[1:]) as rest:
                 found = [*(task() for task in self._tasks[:1]), *rest()]
-        figures = Figures()
+        figures, cache = Figures(), self._context.cache
         for each in found:
             figures.add(each.figures)
-            self._context.cache.passing.update(each.passing)
+            for known, there in ((cache.passing, each.passing), (cache.failed, each.failed)):
+                known.update({key: value for key, value in there.items() if key not in known})
             for stage, seconds in each.seconds.items():
                 self._context.progress.add(stage, seconds)
         for name in [*self._untold]:
@@ -106,12 +109,13 @@ class FigureTasks:
 
     def _found(self, make: Callable[[], Figures]) -> _TaskResult:
         if os.getpid() == self._process:
-            return _TaskResult(make(), {}, {})
-        passing, seconds = {*self._context.cache.passing}, dict(self._context.progress.seconds)
+            return _TaskResult(make(), {}, {}, {})
+        cache, seconds = self._context.cache, dict(self._context.progress.seconds)
         figures = make()
         return _TaskResult(
             figures,
-            {k: v for k, v in self._context.cache.passing.items() if k not in passing},
+            dict(cache.passing),
+            dict(cache.failed),
             {k: s - seconds.get(k, 0.0) for k, s in self._context.progress.seconds.items()},
         )
 

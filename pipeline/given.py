@@ -1,8 +1,7 @@
-"""What `import flexspline` is given: a design, not a path or an array, and the name of a file."""
+"""What `import flexspline` is given for a design: not a path, and checked."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from warnings import warn
 
@@ -20,31 +19,6 @@ class NoDesignError(FlexsplineError, TypeError):
         else:
             said = f"a {type(given).__name__} is not a design; flexspline.load_design reads one from a file"
         super().__init__(f"design: {said}")
-
-
-class NoFileNameError(FlexsplineError, TypeError):
-    """A function was given something else than the name of a file."""
-
-
-def file_name(given: object, what: str) -> Path:
-    """A path where one is given; `what` kind of file it should name.
-
-    Raises
-    ------
-    NoFileNameError
-
-    Examples
-    --------
-    >>> try:
-    ...     file_name({"torque_Nm": [1.0]}, "measured data")
-    ... except FlexsplineError as fault:
-    ...     print(fault)
-    measured data: a dict is not the name of a file
-    """
-    if not isinstance(given, str | os.PathLike):
-        kind = type(given).__name__
-        raise NoFileNameError(f"{what}: a {kind} is not the name of a file")
-    return Path(given)
 
 
 class DesignWarning(UserWarning):

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.errors import DesignError
-from flexspline.pipeline.given import file_name, require_design
+from flexspline.geometry.input_file import file_name
+from flexspline.pipeline.given import require_design
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design

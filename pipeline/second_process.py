@@ -27,9 +27,10 @@ _ALLOWED = ContextVar("allowed", default=False)
 
 @contextmanager
 def second_process() -> Iterator[None]:
-    """While open, `results_of` may take a second process, and BLAS takes one thread in each.
+    """While open, `results_of` may take a second process, and OpenBLAS takes one thread in each.
 
-    With two threads in each of two processes they wait for each other: 2.8 s in place of 0.4.
+    With two threads in each of two processes they wait for each other: 2.8 s in place of 0.4. oneMKL, loaded
+    later, keeps its two: `stiffness` of three examples takes as long with one.
 
     Only where this process has no thread that might hold a lock at that moment: its copy would wait for it
     for ever. A server has such threads, a command has none.

@@ -56,9 +56,9 @@ def predict(
     >>> found.angle_arcsec.tolist()
     [40.0, -40.0]
     """
+    from flexspline.geometry.input_file import file_name
     from flexspline.pipeline.diagnosis.model.model_file import read_model_file
     from flexspline.pipeline.diagnosis.model.predict import predict_file
-    from flexspline.pipeline.given import file_name
     from flexspline.results.diagnosis.predicted import PredictedWithWarnings
 
     read = read_model_file(file_name(model, "model"))

@@ -9,7 +9,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from flexspline.geometry.bolts import BoltCircle
-from flexspline.geometry.outline import SAME_mm
+from flexspline.geometry.outline import SAME_mm, SAME_rad
 
 SMALLEST_PIECE = 1e-6
 """Of a line's range: crossings nearer than this to each other are one."""
@@ -71,12 +71,12 @@ def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
     found: list[Curve] = []
     for x, y in bolts.centres:
         angle = float(np.arctan2(y, x)) % (2 * np.pi)
-        if angle > sector + SAME_mm:
+        if angle > sector + SAME_rad:
             continue
         start, sweep = angle, 2 * np.pi
-        if angle < SAME_mm:
+        if angle < SAME_rad:
             start, sweep = 0.0, np.pi
-        elif angle > sector - SAME_mm:
+        elif angle > sector - SAME_rad:
             start, sweep = angle - np.pi, np.pi
         half = sweep / 2  # two arcs: a circle's parameter has one beginning
         for k in (0, 1):
@@ -90,7 +90,7 @@ def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:
         p, d = np.array(a.start), np.subtract(a.end, a.start)
         q, e = np.array(b.start), np.subtract(b.end, b.start)
         across = d[0] * e[1] - d[1] * e[0]
-        if abs(across) > SAME_mm * np.hypot(*d) * np.hypot(*e):
+        if abs(across) > SAME_rad * np.hypot(*d) * np.hypot(*e):
             w = q - p
             yield p + (w[0] * e[1] - w[1] * e[0]) / across * d
     elif isinstance(a, Arc) and isinstance(b, Arc):

@@ -16,7 +16,7 @@ import numpy as np
 
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.swept_sizing import Finer
-from flexspline.geometry.outline import Meridian, SAME_mm, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, SAME_rad, Segment
 from flexspline.geometry.shaft_shape import Slot
 
 LEAST_STEPS = 2
@@ -115,12 +115,12 @@ class SlottedTube:
             steps.append(min(LARGEST_KEYED_STEP, STEP_GROWTH * steps[-1]))
         beyond = np.cumsum(steps) * left / sum(steps)
         return np.concatenate(
-            [np.arange(0, self.angle - SAME_mm, first), [self.angle], self.angle + beyond]
+            [np.arange(0, self.angle - SAME_rad, first), [self.angle], self.angle + beyond]
         )
 
     def side(self, angles: np.ndarray) -> float:
         """Which of the mesh's angles [rad] goes onto the slot's side: the nearest, but not 0."""
-        others = angles[angles > SAME_mm]
+        others = angles[angles > SAME_rad]
         return float(others[np.abs(others - self.angle).argmin()])
 
     def holds(self, polar: np.ndarray, side: float) -> np.ndarray:

@@ -100,9 +100,8 @@ def evaluate_all(
             if time.monotonic() - beaten > BEAT_S:
                 beaten = time.monotonic()
                 store.beat()
-    except (
-        BaseException
-    ):  # a notebook's process lives on, and nobody else would take these for free
+    # a notebook's process lives on, and nobody else would take these for free
+    except BaseException:
         store.release()
         raise
 

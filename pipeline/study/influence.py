@@ -167,9 +167,8 @@ def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
     ranks = np.column_stack([rankdata(x), rankdata(y)])
     own = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
     size = np.linalg.norm(own, axis=0)
-    if not (
-        size > RANK_ROUNDING * np.linalg.norm(ranks, axis=0)
-    ).all():  # the others stand for one of them
+    # else the others stand for one of them
+    if not (size > RANK_ROUNDING * np.linalg.norm(ranks, axis=0)).all():
         return True
     rho = float(own[:, 0] @ own[:, 1] / size.prod())
     chance = t.isf(BY_CHANCE / 2, free)

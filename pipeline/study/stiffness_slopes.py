@@ -109,10 +109,8 @@ def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: f
     ------
     DesignError, ComputationError : neither side can, by a wider step either.
     """
-    for share in (
-        HELD_STEP,
-        WIDER_STEP * HELD_STEP,
-    ):  # a new step in the outline has a least height
+    # a new step in the outline has a least height
+    for share in (HELD_STEP, WIDER_STEP * HELD_STEP):
         h, ends = share * p, []
         for side in (h, -h):
             try:

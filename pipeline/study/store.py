@@ -189,10 +189,10 @@ class TrialStore:
         from optuna.exceptions import UpdateFinishedTrialError
 
         job = finished.job
-        self._known.held.discard(job.trial_id)
         with suppress(UpdateFinishedTrialError):  # taken for dead meanwhile: another has the design
             self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(finished.outcome))
             self.tell(job.number, finished.objectives)
+        self._known.held.discard(job.trial_id)
 
     @_plainly
     def tell(self, number: int, values: list[float] | None) -> None:
@@ -206,8 +206,8 @@ class TrialStore:
 
     def give_up(self, job: ClaimedDesign) -> None:
         """Close a claimed trial without a row: its design is free again."""
-        self._known.held.discard(job.trial_id)
         self.tell(job.number, None)
+        self._known.held.discard(job.trial_id)
 
     def release(self) -> None:
         """Close what this process claimed and has not finished: it is free again.
@@ -217,8 +217,8 @@ class TrialStore:
         known = self._known
         with suppress(Exception):
             for one in [t for t in known.open() if t.trial_id in known.held]:
-                known.held.discard(one.trial_id)
                 self.tell(one.number, None)
+                known.held.discard(one.trial_id)
 
     @_plainly
     def notes(self) -> dict[str, Any]:

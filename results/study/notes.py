@@ -64,7 +64,8 @@ def _borders(result: StudyResult) -> Iterable[str]:
             used = _used(result, key)
             name = f"{entry(key).name} ({used})" if used else entry(key).name
             mark = f" ({MARK})" if key in in_table else ""
-            yield f"{name}: in {count} of {len(rows)} designs {BORDER}{mark}: {MEANING}."
+            meaning = "" if mark else f": {MEANING}"
+            yield f"{name}: in {count} of {len(rows)} designs {BORDER}{mark}{meaning}."
 
 
 def border_warnings(result: StudyResult) -> Iterable[str]:

@@ -65,7 +65,7 @@ class Noise:
         return self.whitener(stretches)(values)
 
     def whitener(self, stretches: list[slice]) -> Whitener:
-        """What whitens columns of those stretches, each of which starts again.
+        """What whitens columns of those stretches, each of which starts from rest.
 
         The sum of the two parts is an ARMA(1,1) process: its innovations, with the memory ρ and a
         moving-average root θ, are e_t = x_t − ρ x_{t−1} + θ e_{t−1}.

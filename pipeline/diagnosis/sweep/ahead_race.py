@@ -71,6 +71,11 @@ GUESS_LOG = 0.2
 off. Where the shape of the loop says something farther away, other friction bends it."""
 
 
+OTHER_FRICTION_LOG = 0.7
+"""Of a guess over what the race makes of it: where drag spreads the gap's crossing it was 1.65 times too
+large; a gap that swung with the temperature made one 2.7 times that of the race."""
+
+
 def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     """The race with friction ahead of the teeth; None where the record shows nothing like it.
 
@@ -88,9 +93,8 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         return None
     if not _seen(found):
         return None
-    nats = guess.nats
-    sure = nats >= SURE_NATS + _unnamed_nats(found)
-    if not (sure and _is_guessed(found, guess.friction_Nm)):
+    nats = guess.nats if _is_guessed(found, guess.friction_Nm) else 0.0
+    if nats < SURE_NATS + _unnamed_nats(found):
         plain = run_race(prepared)
         gain = gained(found, plain)
         if (
@@ -98,9 +102,9 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         ):  # else the guess is surer than of any shifted reading
             plain = with_torque_offset(plain)
             gain = gained(found, plain)
-        if gain < (-AHEAD_NATS if sure else AHEAD_NATS):
+        if gain < AHEAD_NATS:
             return plain
-        nats = nats if sure else gain
+        nats = gain
     return replace(found, ahead=FoundAhead(std, nats))
 
 
@@ -112,11 +116,11 @@ def _seen(found: ExplainedSweep) -> bool:
 
 
 def _is_guessed(found: ExplainedSweep, friction_Nm: float) -> bool:
-    """Whether the race has the friction that was guessed, of whose place the guess is sure: a gap that moves
-    between cycles may have looked like another."""
+    """Whether the race has about the friction that was guessed, of whose place the guess is sure: a gap that
+    moves between cycles may look like some."""
     ahead = found.prepared.ahead
     assert ahead is not None
-    return abs(float(np.log(ahead.amplitudes[0] / friction_Nm))) < GUESS_LOG
+    return abs(float(np.log(ahead.amplitudes[0] / friction_Nm))) < OTHER_FRICTION_LOG
 
 
 def _unnamed_nats(found: ExplainedSweep) -> float:

@@ -29,7 +29,7 @@ class Rounding:
     ----------
     step : between two readings, arcsec or N·m.
     left_arcsec : rms in the angle.
-    is_seen : whether that is not lost in the angle's white noise.
+    is_seen : whether that is not lost in the angle's white noise, and the step is no file's last digit.
     """
 
     step: float

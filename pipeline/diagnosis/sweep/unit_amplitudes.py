@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.sweep.identification import Identification
 OWN_NATS = 5.0
 """Evidence that separate amplitudes must gain over a common one."""
 SHARE_STD = 2.0
-"""Prior standard deviation of a unit's amplitude, over the common one: 0 or 3 of it are likely."""
+"""Prior standard deviation of a unit's amplitude, over the common one: a ratio of 0 or 3 is likely."""
 SHOWS, SHOWS_NOT = 4.0, 2.0
 """Standard deviations from zero of an amplitude that a unit surely has, and surely need not have."""
 

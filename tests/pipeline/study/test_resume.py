@@ -13,9 +13,10 @@ from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.plan import grid
 from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
-from flexspline.pipeline.study.store import Finished
+from flexspline.pipeline.study.store import Finished, TrialStore
 
 SIZE = 40
+OPTIMIZED = GRID.replace('"grid"', '"optimize"\nevaluations = 6').replace(", steps = 3", "")
 LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")
 
 
@@ -161,6 +162,28 @@ def test_what_was_stopped_goes_on_in_the_same_process(at: int, tmp_path: Path) -
     began = time.monotonic()
     rows = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows
     assert len(rows) == 6
+    assert time.monotonic() - began < 20
+
+
+def test_a_stop_while_a_row_is_stored_leaves_its_design_free(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = study_of(OPTIMIZED)
+    told: list[int] = []
+
+    def stop(self: TrialStore, number: int, values: list[float] | None) -> None:
+        told.append(number)
+        if len(told) == 2:
+            raise KeyboardInterrupt
+        tell(self, number, values)
+
+    tell = TrialStore.tell
+    with monkeypatch.context() as patched:
+        patched.setattr(TrialStore, "tell", stop)
+        with pytest.raises(KeyboardInterrupt):
+            run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
+    began = time.monotonic()
+    assert len(run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows) == 6
     assert time.monotonic() - began < 20
 
 
