@@ -50,6 +50,20 @@ def _shared(key: str) -> Path | None:
     return None if folder is None else folder / key
 
 
+def _is_first(why: str) -> bool:
+    """Whether no copy of this process has said so yet."""
+    mark = _shared(hashlib.sha256(why.encode()).hexdigest())
+    if mark is None:
+        return True
+    try:
+        mark.touch(exist_ok=False)
+    except FileExistsError:
+        return False
+    except OSError:  # no room: twice is better than never
+        return True
+    return True
+
+
 def _taken(path: Path) -> Any:
     try:
         return pickle.loads(path.read_bytes())
@@ -179,7 +193,8 @@ class Cache:
             why = f"could not store a result in {self.folder}: {error.strerror}"
             if why not in self.told:
                 self.told.add(why)
-                self.notice(f"{why}; FLEXSPLINE_CACHE names another folder")
+                if _is_first(why):
+                    self.notice(f"{why}; FLEXSPLINE_CACHE names another folder")
             return False
         return True
 

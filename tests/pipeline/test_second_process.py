@@ -217,6 +217,22 @@ def test_what_is_not_for_the_disk_is_made_once_by_both(fails: bool, tmp_path: Pa
     assert (tmp_path / "made").read_text() == "once\n"
 
 
+@linux_with_two_processors
+def test_both_say_once_that_nothing_can_be_stored(
+    tmp_path: Path, capfd: pytest.CaptureFixture
+) -> None:
+    (tmp_path / "file").touch()
+    cache = Cache(tmp_path / "file", lambda line: print(line, flush=True))
+
+    def task(number: int) -> int:
+        time.sleep(0.5)
+        return cache.get("stage", {"of": number}, lambda: number)[0]
+
+    with second_process():
+        assert results_of([partial(task, k) for k in range(4)]) == [0, 1, 2, 3]
+    assert capfd.readouterr().out.count("could not store") == 1
+
+
 class _Unreadable(ValueError):
     """It can be sent, but not made again."""
 
