@@ -104,8 +104,15 @@ class _Numbers:
 
 
 def _can_copy() -> bool:
-    """On Linux with two processors; macOS has libraries that do not work in a copy."""
-    return sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
+    """On Linux with two processors, where what a copy says goes where this process's words go; macOS has
+    libraries that do not work in a copy."""
+    if sys.platform != "linux" or len(os.sched_getaffinity(0)) < 2:
+        return False
+    try:
+        sys.stderr.fileno()
+    except (AttributeError, OSError, ValueError):  # None, or text kept in memory
+        return False
+    return True
 
 
 def _work(numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> dict[int, T]:

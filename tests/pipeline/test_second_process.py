@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import struct
@@ -53,6 +54,13 @@ def test_two_processes_share_the_tasks_where_that_is_allowed() -> None:
         pids = results_of(tasks)
     assert len({*pids}) == 2
     assert os.getpid() in pids
+
+
+def test_words_kept_in_memory_have_one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a copy says there, nobody reads."""
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with second_process():
+        assert {*results_of([partial(wait_and_say, k) for k in range(3)])} == {os.getpid()}
 
 
 @linux_with_two_processors
