@@ -89,11 +89,11 @@ def reason_of(folder: Path) -> str:
     ("where", "fault", "kept"),
     [
         ("pipeline.study.verify.solid_answer", WorkerDiedError(WORKER_DIED), False),
-        ("pipeline.analysis.part_stiffness", OutOfTimeError(1.0), False),
-        ("pipeline.analysis.part_stiffness", MemoryShortError(9, 9e9, 1e9), False),
-        ("pipeline.analysis.part_stiffness", MemoryError("no room"), False),
+        ("pipeline.figure_tasks.part_stiffness", OutOfTimeError(1.0), False),
+        ("pipeline.figure_tasks.part_stiffness", MemoryShortError(9, 9e9, 1e9), False),
+        ("pipeline.figure_tasks.part_stiffness", MemoryError("no room"), False),
         ("pipeline.study.verify.stiffnesses", MemoryError(), False),
-        ("pipeline.analysis.part_stiffness", GeometryError("a hole has no mesh"), True),
+        ("pipeline.figure_tasks.part_stiffness", GeometryError("a hole has no mesh"), True),
     ],
 )
 def test_what_time_or_memory_was_too_short_for_is_solved_again(
@@ -105,7 +105,7 @@ def test_what_time_or_memory_was_too_short_for_is_solved_again(
         first = reason_of(tmp_path)
     assert first
     monkeypatch.setattr(
-        "flexspline.pipeline.analysis.part_stiffness", failing(GeometryError("solved again"))
+        "flexspline.pipeline.figure_tasks.part_stiffness", failing(GeometryError("solved again"))
     )
     again = reason_of(tmp_path)
     assert again == first if kept else "solved again" in again
