@@ -32,7 +32,7 @@ def check(found: Sequence[Mark]) -> None:
 
 
 def test_demands_on_fixed_seeds() -> None:
-    check(marks(FIXED_SEED, 24))
+    check(marks(FIXED_SEED, 16))
 
 
 @pytest.mark.long

@@ -123,6 +123,7 @@ def test_what_needs_the_cad_kernel_is_one_line_that_names_the_package(tmp_path: 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_a_study_keeps_its_table_and_says_what_is_missing(
     finished_cup: FinishedRun, tmp_path: Path
 ) -> None:

@@ -198,6 +198,7 @@ def test_a_geometric_series_settles_at_its_limit(rate: float) -> None:
     assert doubt == pytest.approx(0.01 * rate**2)
 
 
+@pytest.mark.long
 def test_a_tolerance_is_met_by_more_meshes() -> None:
     """The bounds hold the ratio of a mesh that is twice as fine as the finest of theirs, and its limit."""
     held = lobe_stiffness(THICKER_CUP, STEEL, True, 0.0005)

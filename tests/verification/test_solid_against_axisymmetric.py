@@ -45,6 +45,7 @@ def test_solid_stiffness_lies_within_its_bounds(
         assert level.K_check_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
 
 
+@pytest.mark.long
 def test_wedge_is_the_full_model(record) -> None:
     """Six holes: 1/12 with antisymmetry against the same mesh reflected all round, held by nothing else.
 

@@ -250,6 +250,7 @@ def test_a_shaft_is_as_stiff_as_on_the_meshers_mesh(name: str) -> None:
     assert (b - a) / b < 0.06  # and ours says something
 
 
+@pytest.mark.long
 def test_holes_and_keyway_make_a_shaft_softer() -> None:
     """A theorem: K is the least energy of a turn, and less material has less."""
     part = shaft_of("keyway and holes under a step")

@@ -162,6 +162,7 @@ def test_keys_turn_and_the_page_scrolls_over_a_view(browser, report):
         assert outer["x"] <= inner["x"] <= outer["x"] + outer["width"]
 
 
+@pytest.mark.long
 def test_hands_move_and_zoom_a_view(browser, report):
     """Shift and drag moves the part, a wheel zooms once the view is taken, so do two fingers; one turns."""
     path, _ = report

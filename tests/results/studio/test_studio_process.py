@@ -133,6 +133,7 @@ def ends_soon(studio: Server) -> bool:
     return commands_running(studio) == []
 
 
+@pytest.mark.long
 def test_a_solid_solve_shows_its_progress_and_ends_by_stop_reload_and_close(
     page: Page, studio: Server
 ) -> None:

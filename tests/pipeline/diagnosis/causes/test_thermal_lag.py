@@ -72,6 +72,7 @@ def test_no_lag_has_even_odds() -> None:
     ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lag_s", [0.0, pytest.param(LAG_s, marks=pytest.mark.long)])
 def test_the_size_is_within_its_deviation(lag_s: float, tmp_path: Path) -> None:
     """Of four, chance takes more than one beyond two deviations in one case of seventy. Without lag most were

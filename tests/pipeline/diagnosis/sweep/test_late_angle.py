@@ -183,6 +183,7 @@ def test_a_filtered_sign_is_exact_between_rows() -> None:
     assert found == pytest.approx(np.interp(time, fine, exact), abs=2e-4)
 
 
+@pytest.mark.long
 def test_friction_of_a_form_that_no_element_has_is_no_late_reading() -> None:
     """A staircase; a few rows on the wrong side of the gap bent what stood beside the step to a delay."""
     found = diagnose(draw_case(1500001, 152))
