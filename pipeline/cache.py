@@ -57,10 +57,8 @@ def _is_first(why: str) -> bool:
         return True
     try:
         mark.touch(exist_ok=False)
-    except FileExistsError:
-        return False
-    except OSError:  # no room: twice is better than never
-        return True
+    except OSError as fault:  # without room twice is better than never
+        return not isinstance(fault, FileExistsError)
     return True
 
 

@@ -43,11 +43,3 @@ def encoder_step(angle_arcsec: np.ndarray) -> float:
     # a difference is known to a reading's rounding, the step in it as often as the step goes into it
     unsure = OFF_A_STEP + ONE_READING_ARCSEC / step * (1 + steps)
     return step if np.mean(np.abs(steps - np.round(steps)) < unsure) > WHOLE_STEPS else 0.0
-
-
-def rounding_arcsec(angle_arcsec: np.ndarray, variance: float) -> float:
-    """Rms [arcsec] of what an encoder's rounding leaves, among readings of this variance.
-
-    It is a saw-tooth over the angle, the same at every pass: no effect of the angle can be told below it.
-    """
-    return float(undithered(variance, encoder_step(angle_arcsec)) ** 0.5)

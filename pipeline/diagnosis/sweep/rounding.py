@@ -7,7 +7,6 @@ from math import hypot, sqrt
 
 from flexspline.pipeline.diagnosis.measurement.encoder_step import (
     encoder_step,
-    rounding_arcsec,
     undithered,
 )
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -44,9 +43,10 @@ def rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
 
 
 def rounding_of_angle(prepared: PreparedSweep) -> Rounding:
-    """By the encoder's steps."""
+    """By the encoder's steps: a saw-tooth over the angle, the same at every pass."""
     angle = prepared.sweep.angle_arcsec
-    step, left = encoder_step(angle), rounding_arcsec(angle, prepared.noise.white)
+    step = encoder_step(angle)
+    left = sqrt(undithered(prepared.noise.white, step))
     is_steps = step >= FINEST_ENCODER * (angle.max() - angle.min())
     return Rounding(step, left, is_steps and _is_seen(left, prepared))
 

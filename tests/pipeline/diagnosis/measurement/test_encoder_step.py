@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
 
 
 @pytest.mark.parametrize("step", [2.0, 20.0])
@@ -20,14 +20,14 @@ def test_a_ramp_s_rounding_leaves_that_rms_at_every_pass(step: float, share: flo
     saw_tooth = np.sqrt(np.mean(left.mean(axis=0) ** 2))
     # a mean of 400 is off by 1/20 of the readings' deviation, which adds in squares
     by_chance = left.std() / 20
-    found = rounding_arcsec(read.ravel(), float(left.var()))
+    found = undithered(float(left.var()), encoder_step(read.ravel())) ** 0.5
     # the first harmonic's decay is taken for all: the jumps' edges, of many harmonics, are 6 % of the rms
     assert found == pytest.approx(saw_tooth, rel=0.08, abs=1.2 * by_chance)
 
 
 def test_readings_of_many_digits_are_not_rounded() -> None:
     angle = np.random.default_rng(1).normal(0, 50, 3000)
-    assert rounding_arcsec(angle, 0.04) < 1e-3
+    assert undithered(0.04, encoder_step(angle)) ** 0.5 < 1e-3
 
 
 def test_a_motion_that_repeats_without_noise_has_no_steps() -> None:
