@@ -20,6 +20,8 @@ FEWEST_PER_CYCLE = 150
 """Rows of a cycle that are left: a block is then well below the crossing's band."""
 NOISE_SIGMAS = 4.0
 """Of the torque's noise: a reading farther from those about it, one of 16 000, is a step of the torque."""
+LEAST_ROUNDED = 0.1
+"""Of what a mean over a block rounds the sharpest corner off by; the last digit of a torque is less."""
 SPIKE = 6.0
 """Standard deviations from the mean of both neighbours; one row of normal noise in 500 million."""
 
@@ -28,8 +30,9 @@ def thinned(sweep: Sweep) -> Sweep:
     """A record of some 6000 rows, and what stays single: means over blocks of neighbouring rows of one cycle.
 
     Torque, angle and every channel are averaged over the same rows, so a straight branch stays what it
-    was; a corner is rounded over one block. Spikes of single rows are taken out first. Where cycles
-    are many and short, whole cycles are left out instead, evenly.
+    was. The row at a corner of the torque stays single: what has a memory remembers how far the torque went.
+    Spikes of single rows are taken out first. Where cycles are many and short, whole cycles are left out
+    instead, evenly.
     """
     n = len(sweep)
     if n <= MOST_FIT_ROWS:
@@ -40,29 +43,41 @@ def thinned(sweep: Sweep) -> Sweep:
     block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
-    torque = _steady(h, block)
+    torque, corner = _steady(h, block)
     near = (np.abs(torque) < crossing_band_Nm(h)) & _passing(h, torque, block)
     groups: list[np.ndarray] = []
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
-        rows = rows[~_spikes(sweep.angle_arcsec[rows])]
-        groups += _blocks(rows, near[rows] | _beside_jumps(sweep.angle_arcsec[rows]), block)
+        rows = rows[corner[rows] | ~_spikes(sweep.angle_arcsec[rows])]
+        single = near[rows] | corner[rows] | _beside_jumps(sweep.angle_arcsec[rows])
+        groups += _blocks(rows, single, block)
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
-    return _averaged(sweep, groups, first[order], torque)
+    return _averaged(sweep, groups, first[order], torque, block)
 
 
-def _steady(history: History, block: int) -> np.ndarray:
-    """(n,) torque of each row, by the rows about it where they differ by noise.
+def _steady(history: History, block: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) torque of each row, by the rows about it where they differ by noise; (n,) the rows at its corners.
 
     Its own reading, noisier than a mean over a block, would choose which rows count as near a limit.
     """
-    torque = np.empty(len(history))
+    torque = _smooth(history, history.torque_Nm, block)
+    rounded = np.abs(history.torque_Nm - torque)
+    far = rounded > NOISE_SIGMAS * torque_noise_Nm(history)
+    about = far & (rounded > LEAST_ROUNDED * rounded.max())
+    corner = np.zeros(len(history), bool)
+    for run in np.split(np.arange(len(about)), np.flatnonzero(np.diff(about)) + 1):
+        corner[run[np.argmax(rounded[run])]] = about[run[0]]
+    return np.where(far, history.torque_Nm, torque), corner
+
+
+def _smooth(history: History, values: np.ndarray, block: int) -> np.ndarray:
+    """(n,) means over a block of rows about each row, within its unit."""
+    smooth = np.empty(len(history))
     for rows in history.unit_slices:
-        torque[rows], _ = moving_mean(history.torque_Nm[rows], block // 2)
-    far = np.abs(history.torque_Nm - torque) > NOISE_SIGMAS * torque_noise_Nm(history)
-    return np.where(far, history.torque_Nm, torque)
+        smooth[rows], _ = moving_mean(values[rows], block // 2)
+    return smooth
 
 
 def _passing(history: History, steady_Nm: np.ndarray, block: int) -> np.ndarray:
@@ -128,9 +143,9 @@ def _beyond_scatter(angle: np.ndarray) -> np.ndarray:
 
 
 def _averaged(
-    sweep: Sweep, groups: list[np.ndarray], first: np.ndarray, steady_Nm: np.ndarray
+    sweep: Sweep, groups: list[np.ndarray], first: np.ndarray, steady_Nm: np.ndarray, block: int
 ) -> Sweep:
-    """Rows that stay single have the steady torque (n,): they are as noisy as means then."""
+    """Rows that stay single have the steady torque (n,) and the temperature about them: as noisy as means."""
 
     def mean(values: np.ndarray) -> np.ndarray:
         return np.array([values[g].mean() for g in groups])
@@ -146,9 +161,12 @@ def _averaged(
     within = off @ off, off @ off_torque, off_torque @ off_torque
     alone = np.array(sizes) == 1
     torque[alone] = steady_Nm[first[alone]]
+    temperature = maybe(h.temperature_C)
+    if temperature is not None and h.temperature_C is not None:
+        temperature[alone] = _smooth(h, h.temperature_C, block)[first[alone]]
     history = History(
         torque, h.unit[first], h.cycle[first],
-        maybe(h.time_s), maybe(h.temperature_C),
+        maybe(h.time_s), temperature,
         None if h.input_angle_deg is None else h.input_angle_deg[first], np.array(sizes),
         number=mean(h.time_or_rows(np.arange(len(sweep)))) if h.time_s is None else None,
     )  # fmt: skip

@@ -1,0 +1,45 @@
+"""Long records made shorter: what a mean over a block of rows must not take away."""
+
+from __future__ import annotations
+
+import numpy as np
+from read_sweep import as_read
+
+from flexspline.pipeline.diagnosis.causes.operators import play
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.thinning import MOST_FIT_ROWS, thinned
+
+LARGEST_Nm, FRICTION_Nm = 2.0, 0.2
+ROWS, CYCLES = 120_000, 4
+
+
+def triangles() -> History:
+    turn = np.arange(ROWS) * CYCLES / ROWS
+    torque = LARGEST_Nm * 2 / np.pi * np.arcsin(np.sin(2 * np.pi * turn))
+    return History(torque, np.zeros(ROWS, int), turn.astype(int), 0.1 * np.arange(ROWS))
+
+
+def test_how_far_the_torque_went_stays() -> None:
+    """What a play of friction remembers: means of its output are its output for the means of the torque."""
+    history = triangles()
+    angle = play(history, FRICTION_Nm)
+    short = thinned(as_read(history, angle))
+    assert len(short) < ROWS / 10
+    assert np.ptp(short.history.torque_Nm) == np.ptp(history.torque_Nm)
+    # a block moves by 4 · 2 Nm · 4 / 6000 rows; one that holds a turn of the play is off by an eighth of it
+    a_block_Nm = 4 * LARGEST_Nm * CYCLES / MOST_FIT_ROWS
+    assert np.abs(short.angle_arcsec - play(short.history, FRICTION_Nm)).max() < a_block_Nm / 4
+
+
+def test_single_rows_are_no_noisier_in_temperature_than_means() -> None:
+    """A gap that follows the temperature is read where it is crossed, in rows that stay single."""
+    history = triangles()
+    noise = np.random.default_rng(3).normal(size=ROWS)
+    warm = History(history.torque_Nm, history.unit, history.cycle, history.time_s, 20.0 + noise)
+    short = thinned(as_read(warm, np.zeros(ROWS))).history
+    assert short.readings is not None
+    assert short.temperature_C is not None
+    single = short.readings == 1
+    assert single.sum() > 100
+    # a block has twenty rows, and so has the mean about a single row; four deviations of a deviation of 100
+    assert np.std(short.temperature_C[single]) < 1 / np.sqrt(20) * (1 + 4 / np.sqrt(200))
