@@ -117,7 +117,9 @@ def _beside_jumps(angle: np.ndarray) -> np.ndarray:
     beside = np.zeros(len(angle), bool)
     if len(angle) < 5:
         return beside
-    jumps = _beyond_scatter(np.diff(angle))
+    change = np.diff(angle)
+    jumps = np.zeros(len(change), bool)
+    jumps[1:-1] = _beyond_scatter(change[1:-1] - (change[:-2] + change[2:]) / 2)
     beside[:-1] |= jumps
     beside[1:] |= jumps
     return beside
