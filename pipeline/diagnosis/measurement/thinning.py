@@ -63,13 +63,12 @@ def _steady(history: History, block: int) -> tuple[np.ndarray, np.ndarray]:
     Its own reading, noisier than a mean over a block, would choose which rows count as near a limit.
     """
     torque = _smooth(history, history.torque_Nm, block)
-    rounded = np.abs(history.torque_Nm - torque)
-    far = rounded > NOISE_SIGMAS * torque_noise_Nm(history)
-    about = far & (rounded > LEAST_ROUNDED * rounded.max())
+    rounded, noise = np.abs(history.torque_Nm - torque), torque_noise_Nm(history)
+    about = rounded > max(SPIKE * noise, LEAST_ROUNDED * float(rounded.max()))
     corner = np.zeros(len(history), bool)
     for run in np.split(np.arange(len(about)), np.flatnonzero(np.diff(about)) + 1):
         corner[run[np.argmax(rounded[run])]] = about[run[0]]
-    return np.where(far, history.torque_Nm, torque), corner
+    return np.where(rounded > NOISE_SIGMAS * noise, history.torque_Nm, torque), corner
 
 
 def _smooth(history: History, values: np.ndarray, block: int) -> np.ndarray:
@@ -117,9 +116,8 @@ def _beside_jumps(angle: np.ndarray) -> np.ndarray:
     beside = np.zeros(len(angle), bool)
     if len(angle) < 5:
         return beside
-    change = np.diff(angle)
-    jumps = np.zeros(len(change), bool)
-    jumps[1:-1] = _beyond_scatter(change[1:-1] - (change[:-2] + change[2:]) / 2)
+    changes = np.pad(np.diff(angle), 1, mode="reflect")  # the first and the last may jump too
+    jumps = _off_their_neighbours(changes)[1:-1]
     beside[:-1] |= jumps
     beside[1:] |= jumps
     return beside
@@ -127,14 +125,16 @@ def _beside_jumps(angle: np.ndarray) -> np.ndarray:
 
 def _spikes(angle: np.ndarray) -> np.ndarray:
     """Rows far from both neighbours."""
-    if len(angle) < 5:
-        return np.zeros(len(angle), bool)
-    off = angle[1:-1] - (angle[:-2] + angle[2:]) / 2
-    far = np.zeros(len(angle), bool)
-    far[1:-1] = _beyond_scatter(off)
-    # a spike pulls its neighbours' differences too: only the largest of three is the spike
-    size = np.zeros(len(angle))
-    size[1:-1] = np.abs(off)
+    return np.zeros(len(angle), bool) if len(angle) < 5 else _off_their_neighbours(angle)
+
+
+def _off_their_neighbours(values: np.ndarray) -> np.ndarray:
+    """Which values lie far off the mean of both neighbours: they pull their neighbours' too, by half."""
+    off = np.zeros(len(values))
+    off[1:-1] = values[1:-1] - (values[:-2] + values[2:]) / 2
+    size = np.abs(off)
+    far = np.zeros(len(values), bool)
+    far[1:-1] = _beyond_scatter(off[1:-1])
     return far & (size >= np.maximum(np.roll(size, 1), np.roll(size, -1)))
 
 

@@ -105,6 +105,8 @@ def _about_levels(torque_Nm: np.ndarray) -> float | None:
 
     A rig with weights, read once at each: from row to row torque moves by whole weights.
     """
+    if len(torque_Nm) < FEWEST_OF_LEVEL:
+        return None
     in_order = np.sort(torque_Nm)
     apart = np.diff(in_order)
     edges = np.flatnonzero(apart > LEVELS_APART * np.median(apart)) + 1

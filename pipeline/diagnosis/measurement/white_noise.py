@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
@@ -16,9 +17,9 @@ FIFTH_PER_SIGMA = 0.2533
 def white_noise(readings: np.ndarray, t: np.ndarray) -> float | None:
     """Standard deviation of readings (n,) at times (n,), in their unit; None of too few.
 
-    The least of three estimates, each too large where its assumption fails: from readings off the straight
-    line between their neighbours (ramps), from third differences (curves, evenly sampled), and from the
-    smallest fifth of the steps from one to the next (holds).
+    The least of four estimates, each too large where its assumption fails: from readings off the straight
+    line between their neighbours (ramps), from third differences (curves, evenly sampled; and at their times,
+    where the clock is good), and from the smallest fifth of the steps from one to the next (holds).
     """
     if len(readings) < FEWEST_FOR_NOISE:
         return None
@@ -26,8 +27,24 @@ def white_noise(readings: np.ndarray, t: np.ndarray) -> float | None:
     share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
     off = readings[1:-1] - (1 - share) * readings[:-2] - share * readings[2:]
     line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA
-    third = (
-        np.median(np.abs(np.diff(readings, 3))) / MAD_PER_SIGMA / np.sqrt(20)
-    )  # 1² + 3² + 3² + 1²
+    even, timed = (
+        np.median(np.abs(_off_parabola(readings, at))) / MAD_PER_SIGMA
+        for at in (np.arange(len(t), dtype=float), t)
+    )
     first = np.quantile(np.abs(np.diff(readings)), 0.2) / FIFTH_PER_SIGMA / np.sqrt(2)
-    return float(min(line, third, first))
+    return float(min(line, even, timed, first))
+
+
+def _off_parabola(readings: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """(m,) third divided differences, scaled to the noise of one reading; those of four different times.
+
+    Where no four in a row differ, ∞ once.
+    """
+    four, at = (sliding_window_view(values, 4) for values in (readings, t))
+    apart = np.diff(at, axis=1).min(axis=1) > ABOVE_ZERO
+    if not apart.any():
+        return np.array([np.inf])
+    four, at = four[apart], at[apart] / (at[apart, -1:] - at[apart, :1])
+    others = at[:, :, None] - at[:, None, :] + np.eye(4)
+    weight = 1 / others.prod(axis=2)
+    return np.asarray((weight * four).sum(axis=1) / np.linalg.norm(weight, axis=1))

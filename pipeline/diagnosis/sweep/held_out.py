@@ -166,5 +166,5 @@ def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:
     def named(term: Regressor) -> bool:
         return term.cause is not None and term.cause.id in causes
 
-    now = with_tuned_shapes(learnt, named)
-    return fit_regressors(now, Search(now, named).run().terms)
+    found = with_tuned_shapes(learnt, named)
+    return fit_regressors(found.evidence, found.top.terms)

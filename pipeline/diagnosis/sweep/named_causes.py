@@ -28,7 +28,7 @@ from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
 
-SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.8, 0.5
+SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.6, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
 LAW_UNSURE = 0.02

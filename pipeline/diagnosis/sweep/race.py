@@ -51,8 +51,9 @@ NOISE_ROUNDS = 4
 NOISE_ALIKE = 0.2
 """Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
 NOISE_FALLEN = 1.1
-"""Of the log of its variance, by which it must fall, once a best set has left it, to be found again: a factor
-of three. What falls by less is the shapes' misfit, up to 1.4 times the noise; more terms would fit it."""
+"""Of the log of its variance, or of its slow part's power, by which it must fall, once a best set has left
+it, to be found again: a factor of three. What falls by less is the shapes' misfit, up to 1.4 times the noise;
+more terms would fit it."""
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
@@ -110,8 +111,9 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     begun = prepared
     before: tuple[PreparedSweep, Search] | None = None
     for number in range(NOISE_ROUNDS):
-        search = Search(with_tuned_shapes(_evidence(prepared), is_named))
-        search.run()
+        named = with_tuned_shapes(_evidence(prepared), is_named)
+        search = Search(named.evidence)
+        search.run([(), named.top.terms])
         best = search.exchanged()
         prepared = replace(prepared, columns=search.evidence.columns)
         left = fit_regressors(search.evidence, best.terms).residual()
@@ -120,7 +122,7 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
         if before is not None and min(changes) < -NOISE_ALIKE:
             prepared, search = before
             break
-        fallen = -changes[0] > NOISE_FALLEN
+        fallen = -min(changes) > NOISE_FALLEN
         if number > 0 and not fallen and max(changes) < NOISE_ALIKE:
             break
         if number + 1 < NOISE_ROUNDS:
@@ -147,10 +149,8 @@ def is_named(term: Regressor) -> bool:
     return term.cause is not None
 
 
-def with_tuned_shapes(
-    now: GaussianEvidence, allowed: Callable[[Regressor], bool]
-) -> GaussianEvidence:
-    """The race with tuned shapes: of the best set of allowed terms, of each cause alone, of the best of all.
+def with_tuned_shapes(now: GaussianEvidence, allowed: Callable[[Regressor], bool]) -> Search:
+    """The race of the allowed terms, with shapes tuned: of the best set, and of each cause alone.
 
     Named causes are tuned before any nuisance term is let in: a shape from a coarse grid leaves a
     misfit, which a nuisance term would fill.
@@ -168,7 +168,7 @@ def with_tuned_shapes(
         before, best = best.score, named.run([best.terms, ()])
         if best.score < before + WORTH_TUNING:
             break
-    return now
+    return named
 
 
 def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
 
@@ -25,8 +26,22 @@ def diagnosed(torque_factor: float, tmp_path: Path) -> Diagnosis:
     return diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), path, K_B, K_E)
 
 
-def test_friction_beside_half_the_stiffness_has_the_spring_for_a_rival(tmp_path: Path) -> None:
+def test_half_the_stiffness_beside_friction_is_a_spring_that_the_simulation_lacks(
+    tmp_path: Path,
+) -> None:
     found = diagnosed(0.5, tmp_path)
+    causes = {c.id: c for c in found.outcome.causes}
+    assert found.verdict == "ambiguous"
+    # twice the compliance is 100 % more, whatever part of it the friction takes up
+    spring = causes["series_compliance"]
+    assert spring.magnitude == pytest.approx(100.0, abs=2 * spring.magnitude_std)
+    assert spring.magnitude_std < 25.0
+    assert spring.alternatives == ("stiffness_hardening",)
+    assert "friction_hysteresis" in causes
+
+
+def test_friction_that_takes_the_spring_s_twist_has_it_for_a_rival(tmp_path: Path) -> None:
+    found = diagnosed(0.6, tmp_path)
     rivals = {c.id: c.alternatives for c in found.outcome.causes}
     assert found.verdict == "ambiguous"
     # all cycles run at one rate: a lag as long as a ramp looks the same, and another rate tells it at once
