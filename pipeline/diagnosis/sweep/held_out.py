@@ -20,7 +20,6 @@ from flexspline.pipeline.diagnosis.sweep.prepare import true_history
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, with_tuned_shapes
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
-from flexspline.pipeline.diagnosis.sweep.search import Search
 from flexspline.pipeline.diagnosis.sweep.splits import (
     Split,
     affordable,
