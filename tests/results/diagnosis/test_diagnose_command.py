@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bases import head
 from click.testing import Result
 from example_files import EXAMPLES
 from finished_run import FinishedRun
@@ -146,7 +147,7 @@ def test_another_record_s_model_is_kept(done: tuple[Path, dict], tmp_path: Path)
     for name in ("diagnosis.json", "extended_model.toml"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     shorter = tmp_path / "shorter.csv"
-    shorter.write_text("".join(SWEEP.read_text("utf-8").splitlines(True)[:-40]), "utf-8")
+    shorter.write_bytes(head("xb1-40-sweep"))
     result = flexspline("diagnose", CUP, shorter, *GIVEN, "--out", tmp_path)
     note = f"the diagnosis of {SWEEP.name} that was here is replaced; its model is kept as "
     assert f"{note}extended_model.previous.toml" in result.stderr

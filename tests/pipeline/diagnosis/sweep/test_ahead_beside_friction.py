@@ -11,6 +11,8 @@ from example_files import EXAMPLES
 
 import flexspline
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 COMPLIANCE, GAP, NOISE = 11.387, 72.0, 0.5
 

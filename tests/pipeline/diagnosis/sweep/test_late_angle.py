@@ -190,7 +190,7 @@ def test_friction_of_a_form_that_no_element_has_is_no_late_reading() -> None:
     assert [c["id"] for c in found["causes"]] == ["friction_hysteresis"]
 
 
-@pytest.mark.parametrize("friction_Nm", [1.5, 3.0, 9.0])
+@pytest.mark.parametrize("friction_Nm", [1.5, pytest.param(3.0, marks=pytest.mark.long), 9.0])
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=pytest.mark.long) for s in (1, 2))])
 def test_coulomb_friction_ahead_of_the_teeth_at_one_rate_is_no_late_reading(
     friction_Nm: float, seed: int, tmp_path: Path

@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from histories import PREDICTION, sweep
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+
+pytestmark = pytest.mark.usefixtures("causes_only")
 
 HISTORY = replace(sweep(cycles=24, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
 TORQUE_NOISE_Nm, ANGLE_NOISE = 0.02, 0.05

@@ -14,7 +14,10 @@ def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> 
     assert (found.verdict, found.found) == ("named", ("torque_offset",))
 
 
-@pytest.mark.parametrize(("number", "kind"), [(69, "single"), (497, "single"), (212, "pair")])
+@pytest.mark.parametrize(
+    ("number", "kind"),
+    [(69, "single"), pytest.param(497, "single", marks=pytest.mark.long), (212, "pair")],
+)
 def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int, kind: str) -> None:
     """The first was taken, 35 to 44 % too large: far from zero, more rows tell it from no offset."""
     found = mark(draw_case(4100001, number, kind), diagnose)

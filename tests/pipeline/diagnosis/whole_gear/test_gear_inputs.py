@@ -24,6 +24,8 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({
     "shaft.bolt_count": 0,
     "gear.module_mm": 0.4, "gear.teeth_flexspline": 100, "gear.teeth_circular_spline": 102,
