@@ -85,6 +85,7 @@ def test_while_answers_are_awaited(tab: Page, held: HeldStudio) -> None:
     looks_right(tab, "busy")
 
 
+@pytest.mark.long  # of a hat by default: the next test
 def test_with_a_fault(tab: Page) -> None:
     tab.complete()
     tab.set("flexspline.inner_fillet_mm", "30")
