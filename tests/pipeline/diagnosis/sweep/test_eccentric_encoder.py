@@ -45,6 +45,7 @@ IN_ORDER = [30 * k for k in range(12)]
 ALIASED = [190 * k for k in range(10)]
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     "positions_deg",
     [IN_ORDER, pytest.param([37 * k for k in range(10)], marks=pytest.mark.long), ALIASED],
@@ -58,6 +59,7 @@ def test_an_eccentric_encoder_is_unknown(positions_deg: list[int], tmp_path: Pat
     assert outcome.unexplained[0].channel == "input_angle_deg"
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     ("step_deg", "count"),
     [

@@ -72,6 +72,7 @@ def rig(
     return prepare(as_read(history, angle), PREDICTION)
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     ("periods_s", "filter_s"),
     [

@@ -214,6 +214,7 @@ def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:
     }
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_loop_that_no_element_of_friction_has_is_no_lag() -> None:
     """Bristles ahead of the teeth, at nine rates: once friction and rate dependence, beyond doubt."""
     found = diagnose(draw_case(980113, 2, "pair", "friction_ahead"))

@@ -133,6 +133,7 @@ def test_a_lock_that_follows_beyond_its_capacity_is_among_the_columns() -> None:
     assert min(np.abs(c - way).max() for c in columns) < 1e-12
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
     """Held at 2 N·m it goes on by 0.04 arcsec a second for 500 s; creep would come back at zero."""
     rng = np.random.default_rng(1)
@@ -146,6 +147,7 @@ def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
     assert outcome.unexplained[0].structure == (UnnamedForm("gives_way"),)
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     ("kind", "number"), [("lock_slips", 2), ("lock_yields", 1), ("ringing", 1), ("stick_slip", 4)]
 )
