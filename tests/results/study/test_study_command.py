@@ -63,9 +63,7 @@ def nothing_drawn(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     return begin
 
 
-def test_a_grid_on_one_and_on_two_processes(
-    tmp_path: Path, nothing_drawn: Callable[[], None]
-) -> None:
+def test_a_grid_and_its_resumption(tmp_path: Path, nothing_drawn: Callable[[], None]) -> None:
     one = CliRunner().invoke(
         app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
     )
@@ -95,11 +93,19 @@ def test_a_grid_on_one_and_on_two_processes(
     assert "4 designs are finished already" in again.stderr
     assert rows_of(tmp_path / "1") == rows
 
+
+@pytest.mark.long  # by default: tests/pipeline/study/test_cluster.py, test_resume.py
+def test_a_grid_on_two_processes(tmp_path: Path, nothing_drawn: Callable[[], None]) -> None:
+    nothing_drawn()
+    one = CliRunner().invoke(
+        app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
+    )
+    assert one.exit_code == 0
     two = CliRunner().invoke(
         app, ["study", str(written(tmp_path, workers=2)), "--out", str(tmp_path / "2"), "--json"]
     )
     assert two.exit_code == 0
-    assert rows_of(tmp_path / "2") == rows
+    assert rows_of(tmp_path / "2") == rows_of(tmp_path / "1")
 
 
 def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:

@@ -15,9 +15,9 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 pytestmark = pytest.mark.usefixtures("causes_only")
 
-HISTORY = replace(sweep(cycles=24, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
+HISTORY = replace(sweep(cycles=12, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
 TORQUE_NOISE_Nm, ANGLE_NOISE = 0.02, 0.05
-"""0.2 arcsec by the compliance, known to 3 milliarcsec from 4800 rows; arcsec."""
+"""0.2 arcsec by the compliance, known to 4 milliarcsec from 2400 rows; arcsec."""
 
 
 def lagging(share: float, seed: int) -> DiagnosisOutcome:

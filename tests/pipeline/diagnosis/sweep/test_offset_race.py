@@ -8,6 +8,7 @@ from hidden.cases import draw_case
 from hidden.mark import mark
 
 
+@pytest.mark.long
 def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> None:
     """A staircase, read 0.316 N·m too low; the place found from its first race, 0.268, passes some rows."""
     found = mark(draw_case(1600001, 55), diagnose)
@@ -17,7 +18,10 @@ def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> 
 @pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     ("number", "kind"),
-    [(69, "single"), pytest.param(497, "single", marks=pytest.mark.long), (212, "pair")],
+    [
+        *(pytest.param(n, "single", marks=pytest.mark.long) for n in (69, 497)),
+        (212, "pair"),
+    ],
 )
 def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int, kind: str) -> None:
     """The first was taken, 35 to 44 % too large: far from zero, more rows tell it from no offset."""

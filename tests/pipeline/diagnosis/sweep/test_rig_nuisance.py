@@ -149,7 +149,13 @@ def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
 
 @pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
-    ("kind", "number"), [("lock_slips", 2), ("lock_yields", 1), ("ringing", 1), ("stick_slip", 4)]
+    ("kind", "number"),
+    [
+        ("lock_slips", 2),
+        pytest.param("lock_yields", 1, marks=pytest.mark.long),
+        ("ringing", 1),
+        pytest.param("stick_slip", 4, marks=pytest.mark.long),
+    ],
 )
 def test_hidden_in_a_made_up_record_it_has_no_name(kind: str, number: int) -> None:
     assert diagnose(draw_case(71, number, "foreign", kind))["verdict"] == "unknown"
