@@ -46,7 +46,7 @@ def jobs(folder: Path) -> dict[str, Job]:
         "run": Job(("run", bases.CUP), "result.json"),
         "study": Job(("study", study), "study.csv"),
         "diagnose": Job(("diagnose", plain, sweep), "diagnosis.json"),
-        "diagnose end points": Job(("diagnose", plain, points), "diagnosis.json"),
+        "diagnose end points": Job(("diagnose", plain, points, *bases.GIVEN), "diagnosis.json"),
     }
 
 

@@ -141,6 +141,7 @@ def test_same_input_gives_the_same_files_and_says_it_in_words(
     assert max(map(len, result.stdout.splitlines())) <= 120
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_another_record_s_model_is_kept(done: tuple[Path, dict], tmp_path: Path) -> None:
     """The default folder is the design's, whatever is diagnosed."""
     folder, _ = done

@@ -127,6 +127,7 @@ def test_a_prediction_keeps_the_file_s_form(excel: Path) -> None:
     assert done.exit_code == 0, done.stderr
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_counts_of_an_encoder(tmp_path: Path) -> None:
     path = tmp_path / "counts.csv"
     body = [
@@ -146,6 +147,7 @@ def test_counts_of_an_encoder(tmp_path: Path) -> None:
     assert "--counts-per-turn N" in done.stderr
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_control_characters_of_a_head_are_written_as_escapes(tmp_path: Path) -> None:
     text = head("xb1-40-sweep").decode().replace("torque_Nm", "\x16torque_Nm", 1)
     odd = tmp_path / "odd.csv"

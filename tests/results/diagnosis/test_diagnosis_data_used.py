@@ -132,6 +132,7 @@ def test_gap_and_compliance_with_their_deviation(made: Made) -> None:
         )
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_a_long_record_counts_the_rows_behind_its_means(tmp_path: Path) -> None:
     per_cycle = 4000
     torque = triangles(2 * per_cycle, per_cycle)
