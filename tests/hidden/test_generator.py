@@ -182,7 +182,14 @@ def test_a_single_stands_out_and_shows_in_the_file(cause: str) -> None:
     assert {x.count(",") for x in lines} == {lines[0].count(",")}
 
 
-@pytest.mark.parametrize("kind", [*KINDS, *RIG_FAULTS])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *list(KINDS)[::2],
+        *RIG_FAULTS,
+        *(pytest.param(kind, marks=pytest.mark.long) for kind in list(KINDS)[1::2]),
+    ],
+)
 def test_a_foreign_effect_is_not_absorbed(kind: str) -> None:
     case = draw_case(13, 0, "foreign", kind)
     assert standing(list(case.units), case.rig, (f"foreign:{kind}",)).of_two(0) >= 10

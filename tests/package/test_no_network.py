@@ -94,7 +94,7 @@ def guarded(
     [
         pytest.param(["run", DESIGN], id="run"),
         pytest.param(["stiffness", DESIGN], id="stiffness", marks=pytest.mark.long),  # a part of it
-        pytest.param(["diagnose", DESIGN, "sweep.csv", *K], id="diagnose"),
+        pytest.param(["diagnose", DESIGN, "sweep.csv", *K], id="diagnose", marks=pytest.mark.long),
         pytest.param(["study", "study.toml"], id="study"),
     ],
 )

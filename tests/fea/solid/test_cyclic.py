@@ -113,7 +113,7 @@ def test_waves_give_what_the_quarter_or_half_gives(holes: int, case: str) -> Non
     assert found.dofs == known.dofs if case != "ellipse" else found.dofs <= known.dofs
 
 
-@pytest.mark.parametrize("case", ["lobes", "ellipse"])
+@pytest.mark.parametrize("case", [pytest.param("lobes", marks=pytest.mark.long), "ellipse"])
 def test_iteration_gives_what_factors_give(case: str) -> None:
     model, _ = models(5)
     direct = CASES[case](replace(model, solve_by="direct"))

@@ -62,7 +62,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(
-    "case", [pytest.param(c, marks=[pytest.mark.long] * (c == "lobes")) for c in CASES]
+    "case", [pytest.param(c, marks=[pytest.mark.long] * (c in ("lobes", "ellipse"))) for c in CASES]
 )
 def test_iteration_gives_what_factors_give(case: str, quarter: Model, wedge: Model) -> None:
     model = wedge if case == "torsion" else quarter

@@ -268,7 +268,9 @@ def test_run_shows_the_added_terms(
 NASTY = ['#read("/etc/passwd")', '"); #panic("x") //', "$x^2$ *b* `raw`", "\\u{41} <label> @ref"]
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize(
+    "name", [*NASTY[::2], *(pytest.param(n, marks=pytest.mark.long) for n in NASTY[1::2])]
+)
 def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
     """Design, file, unit and column names are data to the report and the figures."""
     design = tmp_path / "design.toml"
