@@ -140,6 +140,7 @@ def test_eight_designs(tmp_path: Path, cache: None) -> None:
     assert not [t for t in found if t.word == "failed"]
 
 
+@pytest.mark.long
 def test_a_solid_design(tmp_path: Path, cache: None) -> None:
     assert {t.word for t in solid("swept", 0, 1, tmp_path)} == {"answered"}
 

@@ -39,14 +39,13 @@ def jobs(folder: Path) -> dict[str, Job]:
     """The three commands, of one small design and file each, and the shortest of all."""
     plain, study = bases.plain(folder), folder / "study.toml"
     study.write_text(bases.study(folder).replace("evaluations = 4", "evaluations = 12"))
-    sweep, points = folder / "sweep.csv", folder / "points.csv"
+    sweep = folder / "sweep.csv"
     sweep.write_bytes(bases.head("xb1-40-sweep"))
-    points.write_bytes(bases.head("size-40-end-points"))
     return {
         "run": Job(("run", bases.CUP), "result.json"),
         "study": Job(("study", study), "study.csv"),
         "diagnose": Job(("diagnose", plain, sweep), "diagnosis.json"),
-        "diagnose end points": Job(("diagnose", plain, points, *bases.GIVEN), "diagnosis.json"),
+        "backlash": Job(("backlash", plain, *bases.GIVEN), "result.json"),
     }
 
 
@@ -132,7 +131,7 @@ def killed_and_repeated(name: str, folder: Path, kills: int, seed: int) -> tuple
 
 
 def test_a_kill(tmp_path: Path) -> None:
-    killed_and_repeated("diagnose end points", tmp_path, 1, 2)
+    killed_and_repeated("backlash", tmp_path, 2, 2)
 
 
 BLOCKS = [("run", i) for i in range(4)] + [

@@ -96,6 +96,7 @@ def test_no_worse_than_a_dense_grid_of_the_cup(tmp_path: Path) -> None:
     assert reached >= dense * (1 - STUDY_TORSION_TOLERANCE / 2)
 
 
+@pytest.mark.long
 def test_several_objectives_give_a_front_that_nothing_beats(tmp_path: Path) -> None:
     text = TWO.replace(
         '"K_b_Nm_per_rad" = "maximize"',

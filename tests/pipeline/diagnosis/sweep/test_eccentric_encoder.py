@@ -80,7 +80,7 @@ def test_an_eccentric_encoder_is_unknown_where_a_rig_records_one_turn(
     assert not {c.id for c in outcome.causes} & {DRIFT, KINEMATIC}
 
 
-@pytest.mark.parametrize("step_deg", [37, 90])
+@pytest.mark.parametrize("step_deg", [37, pytest.param(90, marks=pytest.mark.long)])
 def test_a_drift_is_one_where_a_rig_records_one_turn(step_deg: int, tmp_path: Path) -> None:
     outcome = diagnosed(
         tmp_path, [step_deg * k % 360 for k in range(14)], np.zeros(14), 40.0

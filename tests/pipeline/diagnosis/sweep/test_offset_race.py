@@ -30,6 +30,7 @@ def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int,
     assert size.deviations < 2
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("causes_only")
 def test_a_gap_that_temperature_changes_is_crossed_where_its_rows_say() -> None:
     """70 to 11 arcsec, and a reading 1.424 N·m too high: 1.256 was said with 0.009 N·m of doubt.

@@ -189,7 +189,7 @@ def test_on_straight_ramps_at_one_rate_a_lag_is_not_told_from_friction() -> None
     assert found_in(lagging(RAMPS), RAMPS)["rate_dependence"] == ("friction_hysteresis",)
 
 
-@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("timed", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_rival_that_the_programme_leaves_open_has_even_odds(timed: bool) -> None:
     """On straight ramps at one rate, or without time: no explanation of the race stands for it."""
     history = RAMPS if timed else replace(SINE, time_s=None)

@@ -218,7 +218,7 @@ def test_jumps_against_the_motion_are_none() -> None:
     assert jumps(saw_tooth(-1.0)) is None
 
 
-@pytest.mark.parametrize("rows_a_second", [10, 100])
+@pytest.mark.parametrize("rows_a_second", [10, pytest.param(100, marks=pytest.mark.long)])
 def test_corners_by_a_clock_of_whole_seconds(rows_a_second: int) -> None:
     """On both sides of a corner all rows may have one time; LAPACK once ended in a traceback there."""
     history = replace(sweep(cycles=2, rows=240, hold=0), temperature_C=None, input_angle_deg=None)

@@ -77,7 +77,11 @@ def bent(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
 
 @pytest.mark.parametrize(
     ("key", "factor"),
-    [pytest.param(FLANK, 2.0, marks=pytest.mark.long), (PLAY, 1.6), (STROKE, 1.025)],
+    [
+        pytest.param(FLANK, 2.0, marks=pytest.mark.long),
+        (PLAY, 1.6),
+        pytest.param(STROKE, 1.025, marks=pytest.mark.long),
+    ],
 )
 def test_the_changed_input_is_named_with_its_size(
     chain: Chain, tmp_path: Path, key: str, factor: float

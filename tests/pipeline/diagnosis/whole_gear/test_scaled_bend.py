@@ -56,7 +56,7 @@ def soft(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     [
         (1 / 3, 0.0),
         pytest.param(0.5, 0.0, marks=pytest.mark.long),
-        (1.6, 0.0),
+        pytest.param(1.6, 0.0, marks=pytest.mark.long),
         pytest.param(1.0, 5.0, marks=pytest.mark.long),
         (1.0, 20.0),
     ],
