@@ -144,7 +144,9 @@ def test_what_is_left_beside_the_truth_is_the_noise() -> None:
     assert max(ratio) < 2.5  # 6 deviations of the worst record: no effect is left out
 
 
-@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize(
+    "number", [*range(4), *(pytest.param(n, marks=pytest.mark.long) for n in range(4, 8))]
+)
 def test_clean_records_stay_within_calibration(number: int) -> None:
     """K and gap as drawn cost less than 3 deviations each: no clean record is off by a finding."""
     case = draw_case(14, number, "clean")
@@ -171,7 +173,10 @@ def test_design_keeps_its_other_lines() -> None:
         altered(text, {("c", "x"): 1})
 
 
-@pytest.mark.parametrize("cause", CAUSES)
+@pytest.mark.parametrize(
+    "cause",
+    [*list(CAUSES)[::2], *(pytest.param(c, marks=pytest.mark.long) for c in list(CAUSES)[1::2])],
+)
 def test_a_single_stands_out_and_shows_in_the_file(cause: str) -> None:
     case = next(c for k in range(10) if (c := draw_case(12, k, "single", cause)).decidable)
     assert case.truth[0][0] == cause
