@@ -36,7 +36,7 @@ def slopes_of(name: str) -> tuple[Slope, ...]:
 def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     """K is proportional to the cube of all lengths together, so Σ p·dK/dp = 3K (Euler).
 
-    The cup is asked by the command, in the default suite (`tests/results/study/test_study_command.py`).
+    The cup is asked by the command (`tests/results/study/test_study_command.py`).
     """
     slopes = slopes_of(name)
     assert [(s.key, s.why.words) for s in slopes if s.agree is not True] == []
