@@ -267,6 +267,7 @@ def test_the_page_runs(
         exec(compile(block, "docs/python.md", "exec"), names)
 
 
+@pytest.mark.long
 def test_solid_and_axisymmetric_model_agree_on_a_free_rim_without_holes() -> None:
     """Two discretisations of one case, each to 5 %: their bounds overlap."""
     text = {"flexspline.bolt_count": 0, "solver.tolerance_pct": 5.0}

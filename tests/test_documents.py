@@ -35,9 +35,21 @@ WRITERS = ("records", "gear", "diagnosis/record", "diagnosis/data_used", "diagno
 """In results/: what writes result.json, gear.json and diagnosis.json."""
 DESIGNS = sorted((EXAMPLES).glob("*.toml"))
 MARKS = {
-    "keyed-shaft": pytest.mark.cad,  # its keyway is cut by the CAD kernel
+    # its keyway is cut by the CAD kernel; by default: test_unfilleted_shaft.py
+    "keyed-shaft": (pytest.mark.cad, pytest.mark.long),
     "hat-25": pytest.mark.long,  # two minutes, twelve holes on a free rim
 }
+
+
+API = "flexspline.pipeline.api"
+STUDIES = (f"{API}.sensitivity", f"{API}.study")
+"""Of functions that solve many designs; by default: tests/pipeline/study/ and tests/results/study/."""
+
+
+def examples(module: str) -> dict[str, doctest.DocTest]:
+    """By the place of their docstring."""
+    found = doctest.DocTestFinder().find(importlib.import_module(module), module)
+    return {one.name: one for one in found if one.examples}
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -45,11 +57,21 @@ def test_docstring_examples(
     name: str, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     monkeypatch.chdir(ROOT)
-    if name == "flexspline.pipeline.api":  # its examples ask for the cup's K, stress and slopes
+    if name == API:  # its examples ask for the cup's K and stress
         request.getfixturevalue("finished_cup")
-    outcome = doctest.testmod(importlib.import_module(name))
-    assert outcome.attempted
-    assert not outcome.failed
+    shown = {place: one for place, one in examples(name).items() if place not in STUDIES}
+    assert shown
+    for one in shown.values():
+        assert not doctest.DocTestRunner().run(one).failed
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("place", STUDIES)
+def test_docstring_examples_of_studies(
+    place: str, finished_cup: FinishedRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert not doctest.DocTestRunner().run(examples(API)[place]).failed
 
 
 def test_the_drawings_of_the_rooms_are_the_code_s() -> None:
@@ -131,6 +153,10 @@ def test_the_contract_lists_every_key_of_an_example_s_records(
 ) -> None:
     """Of a run, of the gear alone, of a sweep against sum and gear, and of end points."""
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
+    for drawn, nothing in (("draw_figures", ()), ("reports_of", {})):  # no record has a key of them
+        monkeypatch.setattr(
+            f"flexspline.results.diagnosis.files.{drawn}", lambda *_, n=nothing, **__: n
+        )
     K = ("--Kb", "31312", "--Ke", "43275")
     sweep, points = (
         EXAMPLES / "measured" / f"{name}.csv" for name in ("xb1-40-sweep", "size-40-end-points")

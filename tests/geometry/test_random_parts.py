@@ -15,7 +15,7 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
 from flexspline.geometry.tagged import tagged_surface
 
-SHORT = settings(max_examples=10, deadline=None, derandomize=True)
+SHORT = settings(max_examples=6, deadline=None, derandomize=True)
 LONG = settings(
     max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much]
 )

@@ -6,6 +6,7 @@ import ast
 import re
 import sys
 import tomllib
+from functools import cache
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -40,10 +41,11 @@ def imported(source: str) -> set[str]:
     return {name.partition(".")[0] for name in names}
 
 
-def third_party() -> set[str]:
+@cache
+def third_party() -> frozenset[str]:
     files = (p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
     found = set().union(*(imported(p.read_text(encoding="utf-8")) for p in files))
-    return found - set(sys.stdlib_module_names) - {"flexspline"}
+    return frozenset(found - set(sys.stdlib_module_names) - {"flexspline"})
 
 
 def test_the_reading_sees_every_way_to_import() -> None:

@@ -12,11 +12,12 @@ import pytest
 from example_files import EXAMPLES
 from finished_run import FinishedRun
 
-from flexspline.fea.types import SolidField
+from flexspline.fea.types import SolidField, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import ellipse_peak as under_test
+from flexspline.pipeline import part_meshes
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -117,12 +118,25 @@ def test_the_solid_model_with_its_holes_has_the_same_peak(finished_cup: Finished
 
 
 def test_a_peak_on_a_mesh_that_is_not_refined_there_says_so(
-    finished_cup: FinishedRun, tmp_path: Path
+    finished_cup: FinishedRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A mesh of fTetWild's is that of K, and has a peak that a finer one may move by a tenth."""
+    """A mesh of fTetWild's is that of K, and has a peak that a finer one may move by a tenth.
+
+    A swept one stands in for it: how it was made is what the program goes by.
+    """
     assert not solid_ellipse(model(CUP, finished_cup.cache)).peak.shortfall
     unswept = {"solver.mesher": "tetwild", "solver.tolerance_pct": 5.0}
-    peak = solid_ellipse(model(CUP.changed(unswept), tmp_path)).peak
+    cup = model(CUP.changed(unswept), tmp_path)
+
+    def stands_in(*asked: object) -> TetMesh:
+        mesh = part_meshes.swept_mesh(cup.part, cup.sector.degrees, cup.first_spec)
+        assert mesh is not None
+        return mesh
+
+    surface = SimpleNamespace(sharp_edges=np.empty((0, 3)))
+    monkeypatch.setattr(part_meshes, "surface_to_mesh", lambda *_: surface)
+    monkeypatch.setattr(part_meshes, "mesh_surface", stands_in)
+    peak = solid_ellipse(cup).peak
     assert "not refined at the peak" in peak.shortfall.words
 
 

@@ -28,6 +28,8 @@ from flexspline.pipeline.rim_case import RIM_CASES
 CUP = load_design(EXAMPLES / "xb1-40.toml")
 FINE = CUP.changed({"solver.tolerance_pct": 0.2})
 """One mesh of the solid model leaves ± 0.26 %; the enclosure is narrower."""
+KNOWN_TO = 1e-4
+"""Bounds of each body, relative, beside 0.1 % asked."""
 WIDE = CUP.changed(
     {
         "flexspline.bolt_count": 6,
@@ -40,12 +42,13 @@ WIDE = CUP.changed(
 
 
 def model(design: Design, folder: Path) -> PartModel:
+    """Its solves are kept in `folder`: the suite's cache where they are those of the program as it is."""
     context = AnalysisContext(design, Cache(folder), Progress())
     return context.part("flexspline")
 
 
-def test_where_the_enclosure_is_narrow_one_mesh_is_enough(tmp_path: Path) -> None:
-    part = model(FINE, tmp_path)
+def test_where_the_enclosure_is_narrow_one_mesh_is_enough(suite_cache: Path) -> None:
+    part = model(FINE, suite_cache)
     found = part_stiffness.part_stiffness(part)
     assert len(found.levels) == 1
     assert found.guaranteed
@@ -56,29 +59,29 @@ def test_where_the_enclosure_is_narrow_one_mesh_is_enough(tmp_path: Path) -> Non
     assert coarse.half_width > 0.002  # which is why it would have gone on
 
 
-def test_the_stress_of_that_one_mesh_may_still_change(tmp_path: Path) -> None:
+def test_the_stress_of_that_one_mesh_may_still_change(suite_cache: Path) -> None:
     """The enclosure knows K, but not the stress."""
-    why = torque_field(model(FINE, tmp_path)).peak.shortfall
+    why = torque_field(model(FINE, suite_cache)).peak.shortfall
     assert "own K is known to ± 0.26 %, not to ± 0.2 %" in why.words
     assert not why.of_the_machine
-    assert not torque_field(model(CUP, tmp_path)).peak.shortfall  # within 0.5 %
+    assert not torque_field(model(CUP, suite_cache)).peak.shortfall  # within 0.5 %
 
 
-def test_the_solid_model_by_name_is_refined_as_ever(tmp_path: Path) -> None:
+def test_the_solid_model_by_name_is_refined_as_ever(suite_cache: Path) -> None:
     asked = {"solver.model": "solid", "solver.tolerance_pct": 0.25}
-    found = part_stiffness.part_stiffness(model(CUP.changed(asked), tmp_path))
+    found = part_stiffness.part_stiffness(model(CUP.changed(asked), suite_cache))
     assert len(found.levels) > 1
     assert not found.guaranteed
 
 
-def test_every_case_of_the_rim_is_answered(tmp_path: Path, monkeypatch) -> None:
+def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> None:
     """On the meridian alone: within the tolerance no tetrahedra are made for them."""
 
     def never(*given: object) -> None:
         raise AssertionError("a solid model was solved")
 
     monkeypatch.setattr(load_cases, "solid_lobes", never)
-    part = model(CUP, tmp_path)
+    part = model(CUP, suite_cache)
     K = {case: rim_stiffness(part, case) for case in RIM_CASES}
     assert all(k.half_width <= 0.005 and not k.shortfall for k in K.values())
     assert not any(k.guaranteed for k in K.values())
@@ -86,9 +89,9 @@ def test_every_case_of_the_rim_is_answered(tmp_path: Path, monkeypatch) -> None:
     assert K["lobes_contact"].K_Nm_per_rad < K["lobes"].K_Nm_per_rad
 
 
-def test_a_wide_enclosure_leaves_it_to_the_solid_model(tmp_path: Path) -> None:
+def test_a_wide_enclosure_leaves_it_to_the_solid_model(suite_cache: Path) -> None:
     """K_b and the held rim by tetrahedra, within the enclosure; lift-off by the enclosure alone, and said."""
-    part = model(WIDE, tmp_path)
+    part = model(WIDE, suite_cache)
     uniform = part_stiffness.part_stiffness(part)
     held = rim_stiffness(part, "lobes")
     for found in (uniform, held):
@@ -101,13 +104,13 @@ def test_a_wide_enclosure_leaves_it_to_the_solid_model(tmp_path: Path) -> None:
     assert contact.lower_Nm_per_rad < held.upper_Nm_per_rad
 
 
-def test_where_the_solid_model_fails_the_enclosure_stays(tmp_path: Path, monkeypatch) -> None:
+def test_where_the_solid_model_fails_the_enclosure_stays(suite_cache: Path, monkeypatch) -> None:
     def fails(*given: object, **named: object) -> None:
         raise ComputationError("no mesh")
 
     case = replace(load_cases.CASES["lobes"], solid=fails)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
-    found = rim_stiffness(model(WIDE, tmp_path), "lobes")
+    found = rim_stiffness(model(WIDE, suite_cache), "lobes")
     assert found.half_width > 0.01
     assert TOO_FAR in found.shortfall.words
     assert "no mesh" in found.shortfall.words
@@ -157,7 +160,7 @@ def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypat
 
 @pytest.mark.parametrize("solver", ["auto", pytest.param("solid", marks=pytest.mark.long)])
 def test_a_wrong_solid_model_of_the_lobes_is_found_out(
-    solver: str, tmp_path: Path, monkeypatch
+    solver: str, suite_cache: Path, monkeypatch
 ) -> None:
     """With the solid model asked for by name too: K 30 % off is no answer."""
     case = load_cases.CASES["lobes"]
@@ -170,20 +173,20 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
         load_cases, "CASES", {**load_cases.CASES, "lobes": replace(case, solid=off)}
     )
     with pytest.raises(NestingError, match="the solid model"):
-        rim_stiffness(model(WIDE.changed({"solver.model": solver}), tmp_path), "lobes")
+        rim_stiffness(model(WIDE.changed({"solver.model": solver}), suite_cache), "lobes")
 
 
 @pytest.mark.long
-def test_lift_off_that_the_solid_model_cannot_solve_is_said(tmp_path: Path) -> None:
+def test_lift_off_that_the_solid_model_cannot_solve_is_said(suite_cache: Path) -> None:
     asked = {"solver.model": "solid", "solver.tolerance_pct": 5.0}
-    context = AnalysisContext(CUP.changed(asked), Cache(tmp_path), Progress())
+    context = AnalysisContext(CUP.changed(asked), Cache(suite_cache), Progress())
     found = stiffnesses(context, shaft=False)
     assert set(found.missing) == {"K_b_lobes_contact"}
     assert "meridian only" in found.missing["K_b_lobes_contact"].words
 
 
 def test_no_mesh_is_made_for_a_free_rim_that_it_could_not_know_better(
-    tmp_path: Path, monkeypatch
+    suite_cache: Path, monkeypatch
 ) -> None:
     """Where fTetWild makes the meshes, that takes minutes."""
 
@@ -192,7 +195,7 @@ def test_no_mesh_is_made_for_a_free_rim_that_it_could_not_know_better(
 
     monkeypatch.setattr(solid_lobes, "rim_mesh", never)
     monkeypatch.setattr(solid_lobes, "twisted_part", never)
-    part = model(CUP.changed({"solver.mesher": "tetwild"}), tmp_path)
+    part = model(CUP.changed({"solver.mesher": "tetwild"}), suite_cache)
     with pytest.raises(NoBetterMeshError):
         next(solid_lobes.lobe_meshes(part, supported=False, known=0.01))
 
@@ -210,19 +213,19 @@ def recorded() -> tuple[list[float], Callable[[PartModel], Stiffness]]:
 
 @pytest.mark.parametrize(("design", "times"), [(WIDE, 1), (CUP, 2)])
 def test_bodies_that_are_far_apart_are_not_solved_finely(
-    design: Design, times: int, tmp_path: Path
+    design: Design, times: int, suite_cache: Path
 ) -> None:
     """At 0.1 %: what the holes take off K stays, however well each body is known."""
     asked, solve = recorded()
-    part = model(design.changed({"solver.tolerance_pct": 0.1}), tmp_path)
+    part = model(design.changed({"solver.tolerance_pct": 0.1}), suite_cache)
     found = enclosure_of(part, solve)
     of_two_bodies = [FIRST_BOUNDS_PCT] * 2 + [pytest.approx(BODY_SHARE * 0.1)] * 2
     assert asked == of_two_bodies[: 2 * times]
     fine = enclosed(part.part, lambda body: torsional_stiffness(
-        body.meridian, part.material, body.driven, 1e-5))  # fmt: skip
+        body.meridian, part.material, body.driven, KNOWN_TO))  # fmt: skip
     # each end is off by its body's own bounds at most
     assert found.half_width < fine.half_width + FIRST_BOUNDS_PCT / 100
-    assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + 1e-5)
+    assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + KNOWN_TO)
     assert (found.shortfall.words == TOO_FAR) is (times == 1)
 
 
@@ -230,11 +233,11 @@ def test_bodies_that_are_far_apart_are_not_solved_finely(
     ("expected", "first"), [(0.003, BODY_SHARE * 0.1), (0.0031, FIRST_BOUNDS_PCT)]
 )
 def test_where_another_case_tells_of_near_bodies_they_are_solved_finely_at_once(
-    expected: float, first: float, tmp_path: Path
+    expected: float, first: float, suite_cache: Path
 ) -> None:
     """Near is three times 0.1 %."""
     asked, solve = recorded()
-    part = model(CUP.changed({"solver.tolerance_pct": 0.1}), tmp_path)
+    part = model(CUP.changed({"solver.tolerance_pct": 0.1}), suite_cache)
     found = enclosure_of(part, solve, expected)
     assert asked[0] == pytest.approx(first)
     assert asked[-1] == pytest.approx(BODY_SHARE * 0.1)

@@ -80,6 +80,7 @@ def test_what_fell_short_is_said() -> None:
     assert not between(cut, whole, OF_HOLES).shortfall
 
 
+@pytest.mark.long
 def test_a_long_thin_tube_is_loaded_too() -> None:
     """A wall of 1/300 of the diameter, on which scikit-fem's search for points on an edge gives up."""
     design = holed_designs(THIN + 1)[THIN]

@@ -3,6 +3,7 @@ becomes of a sweep that fails a check."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -32,9 +33,22 @@ DESIGN = load_design(EXAMPLES / "xb1-40.toml").changed({"solver.tolerance_pct": 
 STATED = DESIGN.changed({"solver.edge_length_mm": 4.0})
 
 
+class MeshedError(Exception):
+    """The first mesh is made."""
+
+
 def first_elements(design: Design, folder: Path) -> int:
+    """Of the first mesh of its shaft, which is not solved."""
+
+    def only_meshed(mesher: Callable[[MeshSpec], TetMesh], spec: MeshSpec, *_: object) -> None:
+        raise MeshedError(mesher(spec).elements)
+
     context = AnalysisContext(design, Cache(folder), Progress())
-    return part_stiffness.part_stiffness(context.part("shaft")).levels[0].elements
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solid_torsion, "solid_stiffness", only_meshed)
+        with pytest.raises(MeshedError) as made:
+            part_stiffness.part_stiffness(context.part("shaft"))
+    return made.value.args[0]
 
 
 def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -32,9 +32,9 @@ WIDE = load_design(EXAMPLES / "xb1-40.toml").changed(
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(suite_cache: Path) -> Path:
     """One cache: the torsion mesh is the same for all, what differs here is not kept in it."""
-    return tmp_path_factory.mktemp("cache")
+    return suite_cache
 
 
 def model(folder: Path, design: Design = WIDE) -> PartModel:

@@ -28,6 +28,7 @@ def with_mesher(mesher: str) -> Design:
     return load_design(EXAMPLES / "xb1-40.toml").changed({**PLAIN, "solver.mesher": mesher})
 
 
+@pytest.mark.long  # of six holes and of a keyway by default: test_swept.py
 @pytest.mark.cad
 def test_a_plain_cup_has_one_stiffness_by_both_meshers(tmp_path: Path) -> None:
     """One cache for both: an answer by one mesher is none for the other."""

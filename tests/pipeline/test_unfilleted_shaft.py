@@ -45,7 +45,7 @@ def by_theorem(part: Part) -> Stiffness:
     return found
 
 
-@pytest.mark.parametrize("fillet", [0.02, 0.1, 0.5, 1.0])
+@pytest.mark.parametrize("fillet", [0.02, pytest.param(0.1, marks=pytest.mark.long), 0.5, 1.0])
 def test_bodies_of_revolution(fillet: float) -> None:
     part = shaft_of(STEPS, fillet=fillet).part("shaft")
     bodies = unfilleted_bodies(part)
@@ -60,22 +60,24 @@ def test_bodies_of_revolution(fillet: float) -> None:
         assert own.upper_Nm_per_rad < more.lower_Nm_per_rad
 
 
-@pytest.fixture
-def shaft(tmp_path: Path) -> PartModel:
+@pytest.fixture(scope="module")
+def shaft(tmp_path_factory: pytest.TempPathFactory) -> PartModel:
     """Keyed, its fillets large enough for a mesh."""
     design = shaft_of(STEPS, KEYWAY, fillet=0.4)
-    return AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
+    cache = Cache(tmp_path_factory.mktemp("keyed"))
+    return AnalysisContext(design, cache, Progress()).part("shaft")
 
 
-def without_fillets(shaft: PartModel, monkeypatch: pytest.MonkeyPatch) -> TwistedPart:
+@pytest.fixture(scope="module")
+def between(shaft: PartModel) -> TwistedPart:
     """What is answered where its mesh with fillets has too many elements."""
-    monkeypatch.setattr(unfilleted_shaft, "MOST_WITH_FILLETS", 10)
-    return unfilleted_shaft.twisted_shaft(shaft, TOLERANCE)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unfilleted_shaft, "MOST_WITH_FILLETS", 10)
+        return unfilleted_shaft.twisted_shaft(shaft, TOLERANCE)
 
 
-def test_a_keyed_shaft(shaft: PartModel, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_keyed_shaft(shaft: PartModel, between: TwistedPart) -> None:
     usual = unfilleted_shaft.twisted_shaft(shaft, TOLERANCE)
-    between = without_fillets(shaft, monkeypatch)
     assert not usual.without_fillets
     assert between.without_fillets
     found = between.stiffness
@@ -88,10 +90,10 @@ def test_a_keyed_shaft(shaft: PartModel, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_its_stress_is_compared_with_no_limit(
-    shaft: PartModel, monkeypatch: pytest.MonkeyPatch
+    shaft: PartModel, between: TwistedPart, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The fillets, where it is largest, are not in the mesh; the field is that of the torque on that mesh."""
-    twisted = without_fillets(shaft, monkeypatch)
+    twisted = between
     monkeypatch.setattr(analysis, "twisted_part", lambda _: twisted)
     field = analysis.torque_field(shaft)
     assert field.left_out == "its fillets"

@@ -65,14 +65,14 @@ def try_all(seeds: Iterable[int], sources: Path, folder: Path) -> list[Tried]:
     return found
 
 
-def test_twelve_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Each kind with two mutations, and each mutation with a kind, by turns."""
+def test_six_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Each kind with a mutation, by turns."""
     pairs = [(kind, number) for kind in range(len(KINDS)) for number in range(len(MUTATIONS))]
-    seeds = [k * len(MUTATIONS) + n for k, n in pairs if (k + n) % 4 == 0]
+    seeds = [k * len(MUTATIONS) + n for k, n in pairs if (k + n) % 8 == 0]
     found = try_all(seeds, tmp_path_factory.mktemp("sources"), here)
     words = Counter(t.word for t in found)
-    assert len(found) == 12
-    assert words["refused"] > 6
+    assert len(found) == 6
+    assert words["refused"] > 2
     assert words["failed"] < 2
 
 

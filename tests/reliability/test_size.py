@@ -103,7 +103,7 @@ is refused; a cup without holes needs no mesh, and its shaft is refused at the s
         pytest.param(bases.CUP, 0.05, marks=SOLVED_FIRST),
         pytest.param(bases.CUP, 0.02, marks=pytest.mark.long),  # finer and coarser ones stay
         (bases.CUP, 1e-3),
-        pytest.param(KEYED, 0.05, marks=KEYWAY),
+        pytest.param(KEYED, 0.05, marks=(KEYWAY, pytest.mark.long)),
         pytest.param(KEYED, 1e-3, marks=(KEYWAY, pytest.mark.long)),
     ],
     ids=lambda p: p.stem if isinstance(p, Path) else f"{p:g}",

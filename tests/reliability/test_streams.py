@@ -66,7 +66,18 @@ def test_letters_without_a_stand_in_lose_their_accents_or_are_escaped() -> None:
     assert plain_letters("齿") == r"\u9f7f"
 
 
-@pytest.mark.parametrize("env", NARROW.values(), ids=NARROW)
+NARROWEST = ("ascii", "C")
+"""Of which another has more letters."""
+
+
+@pytest.mark.parametrize(
+    "env",
+    [
+        pytest.param(env, marks=[pytest.mark.long] * (name not in NARROWEST))
+        for name, env in NARROW.items()
+    ],
+    ids=NARROW,
+)
 def test_a_first_design_goes_through_a_file(env: dict[str, str], tmp_path: Path) -> None:
     kinds = ("cup", "hat")
     for kind, text in zip(
@@ -93,11 +104,8 @@ def said(folder: Path, env: dict[str, str], commands: list[list[str]]) -> list[b
 
 @pytest.mark.parametrize(
     "env",
-    # those that draw figures stay by default
-    [
-        pytest.param(NARROW[n], marks=[pytest.mark.long] * (n in ("ascii", "cp1252")))
-        for n in NARROW
-    ],
+    # the locale stays by default
+    [pytest.param(NARROW[n], marks=[pytest.mark.long] * (n != "C")) for n in NARROW],
     ids=NARROW,
 )
 def test_every_quick_command(env: dict[str, str], tmp_path: Path) -> None:
@@ -166,7 +174,15 @@ FULL = Path("/dev/full")
 @pytest.mark.skipif(not FULL.exists(), reason="needs /dev/full")
 @pytest.mark.parametrize(
     "words",
-    [("init",), ("schema",), ("backlash", CUP, *GIVEN, "--json"), ("--help",), ("run", "--help")],
+    [
+        ("init",),
+        ("backlash", CUP, *GIVEN, "--json"),
+        ("--help",),
+        *(
+            pytest.param(words, marks=pytest.mark.long)
+            for words in (("schema",), ("run", "--help"))
+        ),
+    ],
 )
 def test_a_full_disk_behind_stdout_is_one_line(words: tuple, tmp_path: Path) -> None:
     out = ("--out", tmp_path / "out") if words[0] == "backlash" else ()
@@ -200,7 +216,13 @@ def test_nobody_reads_the_progress(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(shutil.which("sh") is None, reason="needs a shell that closes streams")
 @pytest.mark.parametrize(
-    ("closed", "status"), [("<&-", 0), (">&-", 1), ("2>&-", 0), ("<&- >&- 2>&-", 1)]
+    ("closed", "status"),
+    [
+        pytest.param("<&-", 0, marks=pytest.mark.long),
+        (">&-", 1),
+        ("2>&-", 0),
+        ("<&- >&- 2>&-", 1),
+    ],
 )
 def test_closed_streams(closed: str, status: int, tmp_path: Path) -> None:
     """Result files do not become the stream: they hold what they should."""
@@ -259,7 +281,9 @@ def test_a_current_folder_that_is_gone(tmp_path: Path) -> None:
         assert b"Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("after_s", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize(
+    "after_s", [0.3, *(pytest.param(s, marks=pytest.mark.long) for s in (0.6, 0.9))]
+)
 def test_ctrl_c_is_one_line_at_most(after_s: float, tmp_path: Path) -> None:
     """Later than Python's own start, which nobody can catch."""
     child = subprocess.Popen(

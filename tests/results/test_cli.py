@@ -173,7 +173,11 @@ def test_wrong_design_writes_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [design]
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "status"),
+    # of a shorter command by default: test_streams.py
+    [pytest.param(signal.SIGINT, 130, marks=pytest.mark.long), (signal.SIGTERM, 143)],
+)
 def test_a_request_to_stop_leaves_no_half_written_file(
     number: signal.Signals, status: int, tmp_path: Path
 ) -> None:

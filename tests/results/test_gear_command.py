@@ -286,6 +286,7 @@ def test_what_is_no_whole_gear_is_refused_with_the_range(changes: dict, says: st
         flexspline.gear(DESIGN.changed(changes))
 
 
+@pytest.mark.long
 def test_the_most_teeth_and_the_ends_of_the_module_are_gears() -> None:
     most = {"gear.teeth_circular_spline": 218}
     for changes in (most, {"gear.module_mm": 0.1956}, {"gear.module_mm": 0.2046}):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import failing_drawings
@@ -84,10 +85,24 @@ def test_the_drawing_library_is_loaded_where_something_is_to_be_drawn(context, m
     assert asked == [load]
 
 
-def test_what_is_kept_needs_no_process(context, tmp_path: Path, monkeypatch) -> None:
-    def refuse(*_: object) -> bytes:
-        raise NotDrawnError("asked to draw")
+def refuse(*_: object) -> bytes:
+    raise NotDrawnError("asked to draw")
 
+
+def test_what_could_not_be_drawn_is_drawn_by_the_next_run(context, tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as without, RunDrawings(context) as drawings:
+        without.setattr(DrawingProcess, "draw", refuse)
+        drawings.add(charts(1))
+        assert set(drawings.kept_in(tmp_path).missing) == {"chart 0"}
+    next_one = replace(context, cache=Cache(context.cache.folder))
+    with RunDrawings(next_one) as drawings:
+        drawings.add(charts(1))
+        drawn = drawings.kept_in(tmp_path)
+    assert set(drawn.paths) == {"chart 0"}
+    assert not drawn.missing
+
+
+def test_what_is_kept_needs_no_process(context, tmp_path: Path, monkeypatch) -> None:
     with RunDrawings(context) as drawings:
         drawings.add(charts(1))
         drawings.kept_in(tmp_path)

@@ -79,6 +79,7 @@ def test_both_reports_say_what_is_missing_and_why(bare) -> None:
         assert letters("Flexspline on the wave generator: the ellipse") in text
 
 
+@pytest.mark.long  # of a chart by default: test_run_drawings.py
 @pytest.mark.opengl
 def test_a_missing_picture_is_not_remembered(bare, tmp_path: Path, monkeypatch) -> None:
     """The reports have their own tests."""

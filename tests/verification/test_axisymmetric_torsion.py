@@ -177,7 +177,7 @@ ANY_PART = st.one_of(
 SLOW = (HealthCheck.too_slow,)
 
 
-@settings(max_examples=20, deadline=None, derandomize=True, suppress_health_check=SLOW)
+@settings(max_examples=10, deadline=None, derandomize=True, suppress_health_check=SLOW)
 @given(ANY_PART)
 def test_bounds_contain_a_ten_times_finer_solution(part):
     assert_contains_finer(*part)

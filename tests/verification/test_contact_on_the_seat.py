@@ -134,6 +134,7 @@ def test_some_places_tell_what_all_nodes_tell(cup: Meridian) -> None:
     assert ratio[0] == pytest.approx(ratio[1], rel=5e-5)
 
 
+@pytest.mark.long
 def test_a_wide_seat_on_a_thin_wall_costs_no_more_than_a_narrow_one(monkeypatch) -> None:
     """Equations solved at once: 16 400 and 32 800 here when each node was a place, for minutes."""
     sizes: list[int] = []

@@ -145,10 +145,10 @@ def K(model: GearModel) -> np.ndarray:
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("LAST_HARMONIC", 96),
+        pytest.param("LAST_HARMONIC", 96, marks=pytest.mark.long),
         ("PLACES", 9),
         ("GROOVE_SHARE", 0.15),
-        ("FACE_PLACES", {"relieved": 9}),
+        pytest.param("FACE_PLACES", {"relieved": 9}, marks=pytest.mark.long),
     ],
 )
 def test_what_is_only_numerical_does_not_show(

@@ -211,7 +211,7 @@ def test_same_shaft_gives_the_same_mesh() -> None:
 @pytest.mark.parametrize(
     "rows",
     [
-        pytest.param(segments((4, 20, 6), (24, 13, 6)), id="bored"),
+        pytest.param(segments((4, 20, 6), (24, 13, 6)), id="bored", marks=pytest.mark.long),
         pytest.param(segments((6, 13, 0), (8, 20, 0), (14, 15, 0)), id="to the axis"),
     ],
 )

@@ -91,6 +91,7 @@ def test_mesh_agrees_with_the_cad(shaft) -> None:
     assert np.array_equal(np.unique(mesh.cells), np.arange(len(mesh.nodes)))  # no orphans
 
 
+@pytest.mark.long  # by default the volume that a split takes: test_mesh_agrees_with_the_cad
 def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
     """A cup closed at the axis; the mesher left a crack there every time."""
     given = design(

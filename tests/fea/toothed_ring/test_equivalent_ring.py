@@ -31,6 +31,11 @@ def involute() -> EquivalentRing:
     return equivalent_ring(tooth_cell(toothed("involute")), 0.3)
 
 
+@pytest.fixture(scope="module")
+def trapezoid() -> EquivalentRing:
+    return equivalent_ring(tooth_cell(toothed("trapezoid")), 0.3)
+
+
 def block(height: float, share: float) -> ToothCell:
     """A tooth with radial flanks that fills a share of the pitch."""
     edge = share * HALF_PITCH
@@ -58,16 +63,18 @@ def test_real_teeth_lie_between(involute: EquivalentRing) -> None:
     assert involute.torsion_mm < RIM + 0.2206 * pitch
 
 
-def test_wider_teeth_are_stiffer() -> None:
+def test_wider_teeth_are_stiffer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A third wider each: by much more than what the last, coarse mesh of each may be off."""
+    monkeypatch.setattr(equivalent, "SMALLEST_CHANGE", 5 * SMALLEST_CHANGE)
     rings = [three(equivalent_ring(block(0.45, share), 0.3)) for share in (0.3, 0.6, 0.9)]
     for narrow, middle, wide in zip(*rings, strict=True):
         assert narrow < middle < wide
+        assert wide - narrow > 20 * SMALLEST_CHANGE * middle
 
 
-def test_flanks_differ_little(involute: EquivalentRing) -> None:
+def test_flanks_differ_little(involute: EquivalentRing, trapezoid: EquivalentRing) -> None:
     """Same thickness and slope on the pitch circle: they part by 6 µm at the root, gap 140 µm."""
-    other = equivalent_ring(tooth_cell(toothed("trapezoid")), 0.3)
-    for ours, theirs in zip(three(involute), three(other), strict=True):
+    for ours, theirs in zip(three(involute), three(trapezoid), strict=True):
         # 4 % of the gap moves the teeth's share, a tenth of the thickness at most, by about as much
         assert ours == pytest.approx(theirs, rel=0.005)
         assert abs(ours - theirs) > SMALLEST_CHANGE * ours
@@ -81,10 +88,11 @@ def test_bending_and_torsion_know_no_material(involute: EquivalentRing) -> None:
     assert other.torsion_mm == pytest.approx(involute.torsion_mm, rel=1e-9)
 
 
-def test_theory_page_prints_these_thicknesses(involute: EquivalentRing) -> None:
+def test_theory_page_prints_these_thicknesses(
+    involute: EquivalentRing, trapezoid: EquivalentRing
+) -> None:
     """The page against the program, not the program against a source."""
     page = (Path(__file__).parents[3] / "docs" / "theory.md").read_text(encoding="utf-8")
-    trapezoid = equivalent_ring(tooth_cell(toothed("trapezoid")), 0.3)
     for flank, ring in (("involute", involute), ("trapezoid", trapezoid)):
         assert f"| {flank} | " + " | ".join(f"{t:.3f} mm" for t in three(ring)) + " |" in page
 

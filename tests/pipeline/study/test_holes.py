@@ -268,7 +268,9 @@ def test_what_holes_add_goes_with_the_flange_s_own_compliance() -> None:
     assert twice == pytest.approx(2 * once)
 
 
-@pytest.mark.parametrize("lengths_mm", [(12.0, 11.0), (4.0, 11.0)])
+@pytest.mark.parametrize(
+    "lengths_mm", [(12.0, 11.0), pytest.param((4.0, 11.0), marks=pytest.mark.long)]
+)
 def test_a_shaft_that_is_mostly_flange_is_within_its_bounds(
     nominal_effect: HolesEffect, lengths_mm: tuple[float, float], tmp_path: Path
 ) -> None:

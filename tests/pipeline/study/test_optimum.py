@@ -68,7 +68,7 @@ def test_the_first_design_is_the_study_s_own(tmp_path: Path) -> None:
     assert (rows[0].values[WALL], rows[0].values[LENGTH]) == (0.4, 30.0)  # of xb1-40.toml
 
 
-@pytest.mark.parametrize("seed", [1, 5])
+@pytest.mark.parametrize("seed", [1, pytest.param(5, marks=pytest.mark.long)])
 def test_few_evaluations_find_a_narrow_constraint(seed: int, tmp_path: Path) -> None:
     """1 % of the span keeps it: steps go about the design that oversteps it least."""
 
@@ -96,6 +96,7 @@ def test_no_worse_than_a_dense_grid_of_the_cup(tmp_path: Path) -> None:
     assert reached >= dense * (1 - STUDY_TORSION_TOLERANCE / 2)
 
 
+@pytest.mark.long
 def test_several_objectives_give_a_front_that_nothing_beats(tmp_path: Path) -> None:
     text = TWO.replace(
         '"K_b_Nm_per_rad" = "maximize"',

@@ -36,7 +36,7 @@ def slopes_of(name: str) -> tuple[Slope, ...]:
 def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     """K is proportional to the cube of all lengths together, so Σ p·dK/dp = 3K (Euler).
 
-    The cup is asked by the command, in the default suite (`tests/results/study/test_study_command.py`).
+    The cup is asked by the command (`tests/results/study/test_study_command.py`).
     """
     slopes = slopes_of(name)
     assert [(s.key, s.why.words) for s in slopes if s.agree is not True] == []
@@ -46,7 +46,7 @@ def test_both_ways_meet_and_scaling_holds(name: str) -> None:
         assert total == pytest.approx(3.0, abs=0.01), part
 
 
-@pytest.mark.parametrize("load_case", ["uniform", "lobes"])
+@pytest.mark.parametrize("load_case", ["uniform", pytest.param("lobes", marks=pytest.mark.long)])
 def test_the_sum_follows_its_own_stiffness(load_case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Differences of the sum's term over a step ten times as long, by the K of the sum's load case."""
     key, step = "flexspline.ring_thickness_mm", 0.05

@@ -87,7 +87,7 @@ def test_tightening_a_sum_of_normals_buys_what_the_root_of_squares_says() -> Non
         assert row.width == pytest.approx(2 * 1.95996 * np.hypot.reduce(now), rel=0.01)
 
 
-@pytest.mark.parametrize("base", [8, 64])
+@pytest.mark.parametrize("base", [8, pytest.param(64, marks=pytest.mark.long)])
 def test_tightening_and_indices_tell_one_story(base: int) -> None:
     """Additive: first order is total, they share out all, and who has more of it buys more."""
     rng = np.random.default_rng(base)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bases import head
 from click.testing import Result
 from example_files import EXAMPLES
 from finished_run import FinishedRun
@@ -140,13 +141,14 @@ def test_same_input_gives_the_same_files_and_says_it_in_words(
     assert max(map(len, result.stdout.splitlines())) <= 120
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_another_record_s_model_is_kept(done: tuple[Path, dict], tmp_path: Path) -> None:
     """The default folder is the design's, whatever is diagnosed."""
     folder, _ = done
     for name in ("diagnosis.json", "extended_model.toml"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     shorter = tmp_path / "shorter.csv"
-    shorter.write_text("".join(SWEEP.read_text("utf-8").splitlines(True)[:-40]), "utf-8")
+    shorter.write_bytes(head("xb1-40-sweep"))
     result = flexspline("diagnose", CUP, shorter, *GIVEN, "--out", tmp_path)
     note = f"the diagnosis of {SWEEP.name} that was here is replaced; its model is kept as "
     assert f"{note}extended_model.previous.toml" in result.stderr
@@ -266,7 +268,9 @@ def test_run_shows_the_added_terms(
 NASTY = ['#read("/etc/passwd")', '"); #panic("x") //', "$x^2$ *b* `raw`", "\\u{41} <label> @ref"]
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize(
+    "name", [*NASTY[::2], *(pytest.param(n, marks=pytest.mark.long) for n in NASTY[1::2])]
+)
 def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
     """Design, file, unit and column names are data to the report and the figures."""
     design = tmp_path / "design.toml"

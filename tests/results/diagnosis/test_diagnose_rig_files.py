@@ -9,12 +9,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bases import head
 from click.testing import Result
+from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from flexspline.geometry.load import load_design
 from flexspline.results.cli import app
+from flexspline.results.diagnosis.record import diagnosis_record
 
 CUP = EXAMPLES / "xb1-40.toml"
 SWEEP = EXAMPLES / "measured" / "xb1-40-sweep.csv"
@@ -69,7 +73,7 @@ def read(excel: Path) -> dict:
 def test_the_same_record_gives_the_same_causes(read: dict, tmp_path: Path) -> None:
     copy = tmp_path / SWEEP.name
     copy.write_bytes(SWEEP.read_bytes())
-    plain, said = diagnosed(copy), read
+    plain, said = diagnosis_record(diagnose_file(load_design(CUP), copy, 31329, 43339)), read
     assert [c["id"] for c in said["causes"]] == [c["id"] for c in plain["causes"]]
     for one, other in zip(said["causes"], plain["causes"], strict=True):
         # six to nine decimals were written
@@ -123,6 +127,7 @@ def test_a_prediction_keeps_the_file_s_form(excel: Path) -> None:
     assert done.exit_code == 0, done.stderr
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_counts_of_an_encoder(tmp_path: Path) -> None:
     path = tmp_path / "counts.csv"
     body = [
@@ -142,8 +147,9 @@ def test_counts_of_an_encoder(tmp_path: Path) -> None:
     assert "--counts-per-turn N" in done.stderr
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_control_characters_of_a_head_are_written_as_escapes(tmp_path: Path) -> None:
-    text = SWEEP.read_text(encoding="utf-8").replace("torque_Nm", "\x16torque_Nm", 1)
+    text = head("xb1-40-sweep").decode().replace("torque_Nm", "\x16torque_Nm", 1)
     odd = tmp_path / "odd.csv"
     odd.write_text(text.replace("cycle", "cyc\x1ble", 1), encoding="utf-8")
     words = ("--Kb", 31329, "--Ke", 43339, "--out", tmp_path / "out")

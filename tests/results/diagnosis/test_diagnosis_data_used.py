@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -59,14 +60,18 @@ def written(path: Path, torque: np.ndarray, per_cycle: int, spikes: tuple[int, .
     return path
 
 
+Made = tuple[Path, np.ndarray, Path, dict, str]
+"""The record, its torques, the diagnosis' folder, what it says as JSON and in words."""
+
+
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, np.ndarray, Path, dict]:
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     folder = tmp_path_factory.mktemp("data-used")
     torque = triangles(PER_CYCLE * CYCLES, PER_CYCLE)
     path = written(folder / "rig 7.csv", torque, PER_CYCLE, SPIKES)
     said = json.loads(diagnosed(path, folder / "out", "--json"))
     assert said["verdict"] == "consistent"
-    return path, torque, folder / "out", said
+    return path, torque, folder / "out", said, diagnosed(path, folder / "out")
 
 
 def text_of(out: Path) -> str:
@@ -74,17 +79,17 @@ def text_of(out: Path) -> str:
     return re.sub(r"\s+", " ", " ".join(pages))
 
 
-def test_the_file_and_its_hash(made: tuple[Path, np.ndarray, Path, dict]) -> None:
-    path, _, out, said = made
+def test_the_file_and_its_hash(made: Made) -> None:
+    path, _, out, said, words = made
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     assert said["measurement"] == {"file": "rig 7.csv", "sha256": digest}
     assert digest in text_of(out).replace(" ", "")
     assert digest in (out / "diagnosis.html").read_text(encoding="utf-8")
-    assert digest in diagnosed(path, out)
+    assert digest in words
 
 
-def test_rows_are_counted_by_reason(made: tuple[Path, np.ndarray, Path, dict]) -> None:
-    path, torque, out, said = made
+def test_rows_are_counted_by_reason(made: Made) -> None:
+    _, torque, out, said, words = made
     rows, left = said["rows"], said["rows"]["left_out"]
     note = next(n for n in said["notes"] if "backlash crossing" in n)
     band = float(re.search(r"\|T\| < ([\d.]+)", note)[1])
@@ -98,11 +103,11 @@ def test_rows_are_counted_by_reason(made: tuple[Path, np.ndarray, Path, dict]) -
     assert rows["used"] + sum(left.values()) == rows["read"]
     assert f"Rows used {rows['used']} of {rows['read']}" in text_of(out)
     assert f"{len(SPIKES)} isolated outliers" in text_of(out)
-    assert f"{rows['used']} of {rows['read']} rows were used" in diagnosed(path, out)
+    assert f"{rows['used']} of {rows['read']} rows were used" in words
 
 
-def test_gap_and_compliance_with_their_deviation(made: tuple[Path, np.ndarray, Path, dict]) -> None:
-    path, torque, out, said = made
+def test_gap_and_compliance_with_their_deviation(made: Made) -> None:
+    _, torque, out, said, words = made
     found = said["calibrated"]
     gap, compliance = found["gap_arcsec"], found["compliance_arcsec_per_Nm"]
     # least squares on zero, torque and side, over all rows beyond the crossing: (XᵀX)⁻¹σ²
@@ -117,7 +122,7 @@ def test_gap_and_compliance_with_their_deviation(made: tuple[Path, np.ndarray, P
         COMPLIANCE * (1 + SOFTER), abs=3 * found["compliance_std_arcsec_per_Nm"]
     )
     assert gap == pytest.approx(GAP + WIDER, abs=3 * found["gap_std_arcsec"])
-    for said_where in (text_of(out), " ".join(diagnosed(path, out).split())):
+    for said_where in (text_of(out), " ".join(words.split())):
         sentence = said_where.partition("Calibrated on this record: ")[2]
         first, second = re.findall(r"(?:gap|compliance) ([\d.]+) ± ([\d.]+)", sentence)[:2]
         # as many decimals as two digits of the deviation bear
@@ -127,6 +132,7 @@ def test_gap_and_compliance_with_their_deviation(made: tuple[Path, np.ndarray, P
         )
 
 
+@pytest.mark.usefixtures("nothing_drawn")
 def test_a_long_record_counts_the_rows_behind_its_means(tmp_path: Path) -> None:
     per_cycle = 4000
     torque = triangles(2 * per_cycle, per_cycle)
@@ -169,8 +175,18 @@ def right() -> dict[str, float]:
     return sizes(said)
 
 
-@pytest.mark.parametrize("reading", [250.0, 1000.0, -3000.0, 1e6])
-@pytest.mark.parametrize("rows", [(2,), (300,), (300, 301), (575,)])
+WRONG_ROWS, READINGS = ((2,), (300,), (300, 301), (575,)), (250.0, 1000.0, -3000.0, 1e6)
+BY_TURNS = set(zip(WRONG_ROWS, (1e6, 250.0, -3000.0, 1000.0), strict=True))
+"""Each place and each reading once."""
+
+
+@pytest.mark.parametrize(
+    ("rows", "reading"),
+    [
+        pytest.param(*pair, marks=[pytest.mark.long] * (pair not in BY_TURNS))
+        for pair in product(WRONG_ROWS, READINGS)
+    ],
+)
 def test_wrong_readings_of_any_size_change_no_verdict(
     rows: tuple[int, ...], reading: float, right: dict[str, float], tmp_path: Path
 ) -> None:

@@ -71,7 +71,7 @@ def test_charts_of_designs_can_be_read(draw, tmp_path: Path) -> None:
     assert [faults(f) for f in figures] == [[]]
 
 
-@pytest.mark.parametrize("inputs", [1, 3, 6])
+@pytest.mark.parametrize("inputs", [1, pytest.param(3, marks=pytest.mark.long), 6])
 @pytest.mark.parametrize("kind", ["even", "steep", "surface", "sample", "nothing", "constant"])
 def test_a_tolerance_study_s_chart_can_be_read(kind: str, inputs: int, tmp_path: Path) -> None:
     """Bars of every length; with indices by surface, by the sample, without any."""

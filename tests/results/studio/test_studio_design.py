@@ -162,7 +162,7 @@ def test_designs_are_opened_and_their_tables_come_and_go(tab: Page, tmp_path: Pa
         tab.at("#save").click()
     saved = tomllib.loads(Path(waiting.value.path()).read_text(encoding="utf-8"))
     assert design_from(saved).shaft.keyway is not None
-    tab.complete()
+    tab.quick()
     alone = "without holes and keyway"
     assert alone in tab.row("K_e_Nm_per_rad").inner_text()
     assert alone not in tab.row("K_b_Nm_per_rad").inner_text()

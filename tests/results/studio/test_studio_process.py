@@ -87,6 +87,7 @@ def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> Non
     assert f"± {terms['std']:.1f}" in page.row("backlash_arcsec.total").inner_text()
 
 
+@pytest.mark.long
 def test_the_whole_gear_follows_and_equals_the_command_s(page: Page) -> None:
     page.complete()
     before = page.value("K1_Nm_per_rad")

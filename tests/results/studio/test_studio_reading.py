@@ -119,7 +119,7 @@ FOCUSED = """async () => {
 }"""
 
 
-@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("width", [1280, pytest.param(390, marks=pytest.mark.long)])
 def test_by_keyboard_alone(tab: Page, width: int) -> None:
     tab.tab.set_viewport_size({"width": width, "height": 800})
     tab.quick()

@@ -56,6 +56,7 @@ def test_figures_of_a_former_design_are_grey_in_every_frame(tab: Page, held: Hel
     assert max(seen) <= GREY
 
 
+@pytest.mark.long
 def test_a_late_answer_is_grey_too(tab: Page, held: HeldStudio) -> None:
     tab.complete()
     before = tab.value("K_b_Nm_per_rad")

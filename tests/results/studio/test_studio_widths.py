@@ -9,10 +9,9 @@ import pytest
 from held import HeldStudio
 from studio_page import Page
 
-WINDOWS = (
-    (2560, 1440), (1280, 800), (1024, 768), (768, 1024), (390, 844), (844, 390), (320, 640),
-    (640, 400),  # 1280 × 800 at 200 % zoom
-)  # fmt: skip
+WINDOWS = ((2560, 1440), (1280, 800), (768, 1024), (390, 844), (320, 640))
+BETWEEN = ((1024, 768), (844, 390), (640, 400))
+"""The last is 1280 × 800 at 200 % zoom."""
 PLACES = (
     "button, input, select, a, summary, label, td, th, h2, .unit, .brand, .fault, #canvas, "
     "#scale .bars, #caption p, #busy:not(:empty), #brief > div, #whose, #agreement, svg.line, svg.stack"
@@ -47,10 +46,10 @@ FRAMES = 20
 LONG = "Strain wave gear with a mounting flange, third revision " * 3
 
 
-def looks_right(page: Page, state: str) -> None:
+def looks_right(page: Page, state: str, windows: tuple[tuple[int, int], ...] = WINDOWS) -> None:
     """At every width; all that is wrong is named at once."""
     found: dict[str, Any] = {}
-    for width, height in WINDOWS:
+    for width, height in windows:
         page.tab.set_viewport_size({"width": width, "height": height})
         for _ in range(
             FRAMES
@@ -71,13 +70,15 @@ def test_before_any_answer(tab: Page, held: HeldStudio) -> None:
     looks_right(tab, "start")
 
 
-def test_with_every_answer(tab: Page) -> None:
+@pytest.mark.parametrize("windows", [WINDOWS, pytest.param(BETWEEN, marks=pytest.mark.long)])
+def test_with_every_answer(tab: Page, windows: tuple[tuple[int, int], ...]) -> None:
     tab.complete()
-    looks_right(tab, "complete")
+    looks_right(tab, "complete", windows)
     tab.at("#tab-measured").click()
-    looks_right(tab, "measured")
+    looks_right(tab, "measured", windows)
 
 
+@pytest.mark.long  # before the first ones by default
 def test_while_answers_are_awaited(tab: Page, held: HeldStudio) -> None:
     tab.complete()
     held.hold = lambda question, tables: True
@@ -85,6 +86,7 @@ def test_while_answers_are_awaited(tab: Page, held: HeldStudio) -> None:
     looks_right(tab, "busy")
 
 
+@pytest.mark.long  # of a hat by default: the next test
 def test_with_a_fault(tab: Page) -> None:
     tab.complete()
     tab.set("flexspline.inner_fillet_mm", "30")
@@ -92,16 +94,17 @@ def test_with_a_fault(tab: Page) -> None:
     looks_right(tab, "error")
 
 
-def test_a_hat_with_holes_and_a_long_name(tab: Page) -> None:
+@pytest.mark.parametrize("windows", [WINDOWS, pytest.param(BETWEEN, marks=pytest.mark.long)])
+def test_a_hat_with_holes_and_a_long_name(tab: Page, windows: tuple[tuple[int, int], ...]) -> None:
     tab.at("#new-hat").click()
     tab.field("flexspline.flange_thickness_mm").wait_for()
     tab.at("#name").fill(LONG)
     tab.at("#left-out").wait_for()
     tab.complete()
-    looks_right(tab, "hat")
+    looks_right(tab, "hat", windows)
     tab.set("flexspline.inner_fillet_mm", "30")
     tab.at(".row .fault:visible").wait_for()
-    looks_right(tab, "hat, error")
+    looks_right(tab, "hat, error", windows)
 
 
 def test_beside_a_pinned_design(tab: Page) -> None:

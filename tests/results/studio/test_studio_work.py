@@ -51,7 +51,7 @@ def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(tab: Pa
     tab.set("solver.tolerance_pct", "5")
     tab.set("flexspline.wall_thickness_mm", "0.8")
     tab.set("flexspline.ring_thickness_mm", "1")
-    tab.complete()
+    tab.quick()
     tab.at("#work-solid").click()
     solid = tab.row("K_b_Nm_per_rad").locator("td.solid:not(.stale)")
     solid.wait_for()

@@ -12,6 +12,7 @@ from opengl import why_no_pictures
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from flexspline.pipeline.study import stiffness_slopes
 from flexspline.results.cli import app
 from flexspline.results.file_names import STUDY as STUDY_FILES
 
@@ -63,9 +64,7 @@ def nothing_drawn(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     return begin
 
 
-def test_a_grid_on_one_and_on_two_processes(
-    tmp_path: Path, nothing_drawn: Callable[[], None]
-) -> None:
+def test_a_grid_and_its_resumption(tmp_path: Path, nothing_drawn: Callable[[], None]) -> None:
     one = CliRunner().invoke(
         app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
     )
@@ -95,11 +94,19 @@ def test_a_grid_on_one_and_on_two_processes(
     assert "4 designs are finished already" in again.stderr
     assert rows_of(tmp_path / "1") == rows
 
+
+@pytest.mark.long  # by default: tests/pipeline/study/test_cluster.py, test_resume.py
+def test_a_grid_on_two_processes(tmp_path: Path, nothing_drawn: Callable[[], None]) -> None:
+    nothing_drawn()
+    one = CliRunner().invoke(
+        app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
+    )
+    assert one.exit_code == 0
     two = CliRunner().invoke(
         app, ["study", str(written(tmp_path, workers=2)), "--out", str(tmp_path / "2"), "--json"]
     )
     assert two.exit_code == 0
-    assert rows_of(tmp_path / "2") == rows
+    assert rows_of(tmp_path / "2") == rows_of(tmp_path / "1")
 
 
 def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
@@ -167,15 +174,38 @@ def test_a_wrong_study_leaves_nothing(
     assert not out.exists()
 
 
-def test_sensitivity_prints_its_table_as_json(tmp_path: Path) -> None:
+def slopes_said(folder: Path) -> list[dict]:
+    """What `sensitivity` of the example prints and stores."""
     done = CliRunner().invoke(
-        app, ["sensitivity", str(DESIGN), "--out", str(tmp_path), "--json"]
+        app, ["sensitivity", str(DESIGN), "--out", str(folder), "--json"]
     )  # fmt: skip
     assert done.exit_code == 0
     said = json.loads(done.stdout)
-    assert said == json.loads((tmp_path / "sensitivity.json").read_text())
-    assert {"key", "value_mm", "figure", "adjoint_Nm_per_rad_per_mm"} <= set(said["sensitivity"][0])
-    assert [s for s in said["sensitivity"] if not s.get("agree")] == []
+    assert said == json.loads((folder / "sensitivity.json").read_text())
+    slopes = said["sensitivity"]
+    assert {"key", "value_mm", "figure", "adjoint_Nm_per_rad_per_mm"} <= set(slopes[0])
+    assert [s for s in slopes if not s.get("agree")] == []
+    return slopes
+
+
+def test_sensitivity_prints_its_table_as_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a dimension of each part."""
+    keys = {"flexspline.wall_thickness_mm", "shaft.segment[1].outer_diameter_mm"}
+    every = stiffness_slopes.lengths
+    monkeypatch.setattr(
+        stiffness_slopes,
+        "lengths",
+        lambda part: {k: v for k, v in every(part).items() if k in keys},
+    )
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path / "cache"))
+    assert {s["key"] for s in slopes_said(tmp_path)} == keys
+
+
+@pytest.mark.long
+def test_sensitivities_of_all_dimensions_obey_scaling(tmp_path: Path) -> None:
+    slopes = slopes_said(tmp_path)
     for figure in ("K_b_Nm_per_rad", "K_e_Nm_per_rad"):  # Euler, as in test_sensitivity.py
-        own = [s["pct_per_pct"] for s in said["sensitivity"] if s["figure"] == figure]
+        own = [s["pct_per_pct"] for s in slopes if s["figure"] == figure]
         assert sum(own) == pytest.approx(3.0, abs=0.01)

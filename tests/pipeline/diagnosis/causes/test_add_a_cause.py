@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 PAGE = Path(__file__).parents[4] / "docs" / "add-a-cause.md"
 # in a process of its own: a class once defined stays among all causes
 SCRIPT = """
@@ -58,6 +60,7 @@ def test_the_page_s_cause_is_found(tmp_path: Path) -> None:
     assert std < 0.25 * magnitude
 
 
+@pytest.mark.long
 def test_without_the_file_nobody_is_named_thermal_compliance() -> None:
     verdict, named = diagnosed("")
     assert verdict in ("unknown", "ambiguous", "named")

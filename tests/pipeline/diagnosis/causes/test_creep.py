@@ -54,8 +54,22 @@ def kelvin(history: History, share: float, tau_s: float) -> np.ndarray:
     return share * COMPLIANCE * out
 
 
-@pytest.mark.parametrize("taus_s", [(20.0, 90.0, 400.0), (10.0, 30.0, 100.0, 300.0), (60.0, 600.0)])
-@pytest.mark.parametrize("step_s", [3.0, 20.0])
+THREE, FOUR, TWO = (20.0, 90.0, 400.0), (10.0, 30.0, 100.0, 300.0), (60.0, 600.0)
+"""Time constants [s] of the elements."""
+
+
+@pytest.mark.parametrize(
+    ("taus_s", "step_s"),
+    [
+        (THREE, 20.0),
+        (FOUR, 20.0),
+        (TWO, 3.0),
+        *(
+            pytest.param(taus_s, step_s, marks=pytest.mark.long)
+            for taus_s, step_s in ((THREE, 3.0), (FOUR, 3.0), (TWO, 20.0))
+        ),
+    ],
+)
 def test_twist_that_comes_to_rest_within_a_hold_has_its_size(
     taus_s: tuple[float, ...], step_s: float
 ) -> None:

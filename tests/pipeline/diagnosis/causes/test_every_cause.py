@@ -127,9 +127,10 @@ def test_no_shapes_without_the_channel(cause: Cause, channel: str) -> None:
 def test_every_shape_may_be_read_back(cause: Cause) -> None:
     """The check of model files refuses nothing that a cause tries, on records of many kinds."""
     for history in (*OTHERS.values(), sweep(cycles=9), sweep(rows=200, hold=50)):
-        for shape in cause.shapes(FitContext(PREDICTION, history)):
-            k = cause.columns(shape, OTHERS["coarse"]).shape[1]
-            assert fault_of(cause, shape, k) is None
+        tried = cause.shapes(FitContext(PREDICTION, history))
+        together = cause.columns_of_all(tried, OTHERS["coarse"]) if tried else []
+        for shape, columns in zip(tried, together, strict=True):
+            assert fault_of(cause, shape, columns.shape[1]) is None
     k = cause.columns(shapes(cause)[0], RIG.history).shape[1]
     assert fault_of(cause, {**shapes(cause)[0], "colour": 1.0}, k) is not None
     assert fault_of(cause, shapes(cause)[0], k + 1) is not None

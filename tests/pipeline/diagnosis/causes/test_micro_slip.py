@@ -85,7 +85,7 @@ def test_friction_that_grows_with_torque_is_widest_where_torque_is_high() -> Non
     assert FRICTION.widest_arcsec(loop, rig) == pytest.approx(12 * (1 - 2 * r / LARGEST), abs=0.13)
 
 
-@pytest.mark.parametrize("number", [1, 2])
+@pytest.mark.parametrize("number", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_a_joint_of_slipping_springs_is_named_and_predicted_where_it_was_not_measured(
     number: int,
 ) -> None:

@@ -16,6 +16,8 @@ from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 WIDTH_arcsec = 6.0
 
@@ -42,8 +44,17 @@ def record(path: Path, rows_per_cycle: int, seconds: tuple[float, ...]) -> Path:
     return path
 
 
-@pytest.mark.parametrize("rows_per_cycle", [100, 300])
-@pytest.mark.parametrize("seconds", [(180.0,), (180.0, 540.0, 54.0)])
+ONE_RATE, THREE_RATES = (180.0,), (180.0, 540.0, 54.0)
+
+
+@pytest.mark.parametrize(
+    ("rows_per_cycle", "seconds"),
+    [
+        (100, ONE_RATE),
+        (100, THREE_RATES),
+        *(pytest.param(300, s, marks=pytest.mark.long) for s in (ONE_RATE, THREE_RATES)),
+    ],
+)
 def test_a_square_loop_is_friction(
     rows_per_cycle: int, seconds: tuple[float, ...], tmp_path: Path
 ) -> None:

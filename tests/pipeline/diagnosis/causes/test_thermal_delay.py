@@ -19,6 +19,8 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import over_temperature
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 CUP = EXAMPLES / "xb1-40.toml"
 PER_KELVIN, DELAY_s, PERIOD_s = -0.6, 350.0, 2700.0
 CAUSE = ThermalClearance()
@@ -59,7 +61,9 @@ def test_lags_that_cancel_each_other_leave_the_size_less_sure(tmp_path: Path) ->
     assert abs(found.magnitude - PER_KELVIN) < 2 * found.magnitude_std
 
 
-@pytest.mark.parametrize("constants_s", [(600.0,), (1500.0,), (400.0, 300.0)])
+@pytest.mark.parametrize(
+    "constants_s", [(600.0,), pytest.param((1500.0,), marks=pytest.mark.long), (400.0, 300.0)]
+)
 def test_a_gear_that_swings_behind_the_air_from_before_the_record_on(
     constants_s: tuple[float, ...], tmp_path: Path
 ) -> None:

@@ -18,6 +18,8 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
 from flexspline.results.diagnosis.notes import notes
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 PER_KELVIN = -1.0
 ROWS, PER_CYCLE, STEP_s = 1200, 120, 3.0
 LAG_s = 400.0

@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_point
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import CORRECTED_P_VALUE
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
@@ -150,16 +151,14 @@ def test_units_within_are_consistent() -> None:
     assert all(u.p_corrected >= CORRECTED_P_VALUE for u in analysis.units)
 
 
-@pytest.mark.parametrize(
-    ("draws", "least"), [(10, 8), pytest.param(15, 12, marks=pytest.mark.long)]
-)
+@pytest.mark.parametrize(("draws", "least"), [(6, 5), pytest.param(15, 12, marks=pytest.mark.long)])
 def test_false_alarms_are_as_rare_as_stated(draws: int, least: int) -> None:
     rng = np.random.default_rng(4)
     verdicts = [
         diagnose_end_points(DESIGN, units([0.5], 4, rng), PREDICTION)[0].verdict
         for _ in range(draws)
     ]
-    # 5 % in expectation: more than 2 of 10 happens once in 87 times, more than 3 of 15 once in 180
+    # 5 % in expectation: more than 1 of 6 happens once in 30 times, more than 3 of 15 once in 180
     assert verdicts.count("consistent") >= least
     assert "named" not in verdicts
 
@@ -176,10 +175,17 @@ def test_two_torques_tell_compliance_from_clearance() -> None:
     assert "series_compliance" not in mine
 
 
-def test_two_torques_show_asymmetry_that_one_cannot() -> None:
-    rng = np.random.default_rng(6)
-    made = units([1.0, 6.0], 5, rng, asymmetry=0.2)
-    outcome = diagnose_end_points(DESIGN, made, PREDICTION)[0]
+@pytest.fixture(scope="module")
+def lopsided() -> tuple[EndPoints, DiagnosisOutcome]:
+    """Units softer one way than the other, and what is said of them."""
+    made = units([1.0, 6.0], 5, np.random.default_rng(6), asymmetry=0.2)
+    return made, diagnose_end_points(DESIGN, made, PREDICTION)[0]
+
+
+def test_two_torques_show_asymmetry_that_one_cannot(
+    lopsided: tuple[EndPoints, DiagnosisOutcome],
+) -> None:
+    made, outcome = lopsided
     assert outcome.verdict == "named"
     assert [c.id for c in outcome.causes] == ["direction_asymmetry"]
     # K₊/K₋ = 0.8/1.2: (K₊ − K₋)/mean = −0.4, in %
@@ -189,10 +195,11 @@ def test_two_torques_show_asymmetry_that_one_cannot() -> None:
     assert "direction_asymmetry" not in {c.id for c in one.causes}
 
 
-def test_a_size_that_is_not_known_is_a_suspicion(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_size_that_is_not_known_is_a_suspicion(
+    lopsided: tuple[EndPoints, DiagnosisOutcome], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The asymmetry of the test above, were its size asked to be surer than it is."""
-    made = units([1.0, 6.0], 5, np.random.default_rng(6), asymmetry=0.2)
-    outcome = diagnose_end_points(DESIGN, made, PREDICTION)[0]
+    made, outcome = lopsided
     surer = outcome.causes[0].deviations + 0.01
     monkeypatch.setattr("flexspline.pipeline.diagnosis.decision.SIZE_KNOWN", surer)
     outcome, analysis, model = diagnose_end_points(DESIGN, made, PREDICTION)

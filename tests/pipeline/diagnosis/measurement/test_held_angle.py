@@ -61,7 +61,7 @@ def coarse(angle: np.ndarray) -> np.ndarray:
     ("torque", "read", "noise"),
     [
         (RAMPS, lambda angle: angle, 0.02),
-        (RAMPS / 8, coarse, 0.02),
+        pytest.param(RAMPS / 8, coarse, 0.02, marks=pytest.mark.long),
         # the angle of a programme that was computed and not measured
         (STAIRS, lambda angle: line(STAIRS), 0.02),
     ],

@@ -182,15 +182,28 @@ def test_what_a_gear_or_a_programme_does_stays(change, tmp_path: Path) -> None:
     assert len(sweep) == ROWS
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_torques_that_the_angle_does_not_follow_are_wrong(tmp_path: Path, seed: int) -> None:
-    """A motor's switching in the cable of the load cell: single rows of 1 to 8 N·m, of a record to 10 N·m."""
+def switched(seed: int) -> tuple[Columns, np.ndarray]:
+    """A motor's switching in the cable of the load cell: single rows of 1 to 8 N·m, of a record to 10 N·m;
+    and which rows."""
     columns, rng = record(seed), np.random.default_rng(seed)
     rows = np.sort(rng.choice(np.arange(5, ROWS - 5, 3), 12, replace=False))
     columns["torque_Nm"][rows] += rng.choice([-1, 1], 12) * rng.uniform(1.5, 8, 12)
-    sweep = read(columns, tmp_path)
-    (wrong,) = sweep.wrong
+    return columns, rows
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_torques_that_the_angle_does_not_follow_are_wrong(tmp_path: Path, seed: int) -> None:
+    columns, rows = switched(seed)
+    (wrong,) = read(columns, tmp_path).wrong
     assert wrong.lines == tuple(rows + 2)
+
+
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2))]
+)
+def test_torques_that_the_angle_does_not_follow_change_no_cause(tmp_path: Path, seed: int) -> None:
+    columns, _ = switched(seed)
     found = diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), written(columns, tmp_path), *GIVEN)
     assert [c.id for c in found.causes] == ["friction_hysteresis"]
 

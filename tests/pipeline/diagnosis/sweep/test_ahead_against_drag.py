@@ -67,7 +67,7 @@ def record(seed: int) -> Sweep:
     )
 
 
-@pytest.mark.parametrize("seed", [2, 3])
+@pytest.mark.parametrize("seed", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_rows_in_the_gap_do_not_pin_the_friction(seed: int) -> None:
     """The rows at 0.25 N·m lie in the gap; those on either side are 0.0625 N·m away."""
     prediction = Prediction(COMPLIANCE, 0.3, GAP_ARCSEC, 10.0)

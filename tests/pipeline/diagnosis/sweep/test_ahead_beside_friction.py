@@ -11,6 +11,8 @@ from example_files import EXAMPLES
 
 import flexspline
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 COMPLIANCE, GAP, NOISE = 11.387, 72.0, 0.5
 
@@ -79,6 +81,7 @@ def test_the_friction_ahead_is_found_beside_a_lag(tmp_path: Path) -> None:
     assert causes["rate_dependence"].magnitude == pytest.approx(COMPLIANCE * lag_s, rel=0.1)
 
 
+@pytest.mark.long
 def test_no_lock_that_gives_way_against_the_torque_takes_friction_back(tmp_path: Path) -> None:
     """Such a lock, with a drift, stood beside friction 15 % too large."""
     friction, shift = 0.2, 0.3

@@ -36,7 +36,9 @@ def record(friction_Nm: float) -> Sweep:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("friction", "seen"), [(0.0, False), (0.3, True)])
+@pytest.mark.parametrize(
+    ("friction", "seen"), [pytest.param(0.0, False, marks=pytest.mark.long), (0.3, True)]
+)
 def test_a_guess_that_ends_within_the_torque_s_noise_is_none(
     friction: float, seen: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,8 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.structure_words import structure_words
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 FINE = 2000
 """Rows of a cycle of the true course: a delay is followed to a tenth of a row that is read."""
 EVERY = 10
@@ -89,7 +91,9 @@ def test_a_late_torque_reading_is_said_with_its_delay(filtered: bool) -> None:
     assert "one instant" in why(outcome.next_measurement, "sweep")
 
 
-@pytest.mark.parametrize("periods_s", [(240.0, 60.0) * 3, (60.0,) * 4])
+@pytest.mark.parametrize(
+    "periods_s", [pytest.param((240.0, 60.0) * 3, marks=pytest.mark.long), (60.0,) * 4]
+)
 def test_a_gap_crossed_outside_its_band_is_no_noise(periods_s: tuple[float, ...]) -> None:
     """1 s late at 0.13 N·m/s, 100 rows a cycle: in every quick load the step of 60 arcsec is read where local
     polynomials over 8 rows look for noise."""

@@ -61,7 +61,8 @@ def test_a_ramp_builds_it_up_as_in_closed_form(power: float, course: np.ufunc) -
     assert found == pytest.approx(course(past), abs=1e-3)
 
 
-@pytest.mark.parametrize("power", [0.5, 0.6])
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize("power", [0.5, pytest.param(0.6, marks=pytest.mark.long)])
 def test_a_dashpot_of_a_low_power_may_be_friction_beside_a_lag_or_a_lag(power: float) -> None:
     history = rig()
     lag = carried(history, 0.08 * LARGEST, power)

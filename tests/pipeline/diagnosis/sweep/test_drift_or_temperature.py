@@ -57,7 +57,10 @@ def late(share: np.ndarray) -> np.ndarray:
     return PER_KELVIN * 12 * (share - 0.1 * (1 - np.exp(-share / 0.1)))
 
 
-@pytest.mark.parametrize("zero", [lambda share: PER_KELVIN * rises(share), of_time, late])
+@pytest.mark.parametrize(
+    "zero",
+    [lambda share: PER_KELVIN * rises(share), pytest.param(of_time, marks=pytest.mark.long), late],
+)
 def test_time_and_a_steady_rise_are_not_told_apart(zero: Course, tmp_path: Path) -> None:
     found = diagnosed(rises, zero, tmp_path)
     (cause,) = found.causes

@@ -45,7 +45,11 @@ IN_ORDER = [30 * k for k in range(12)]
 ALIASED = [190 * k for k in range(10)]
 
 
-@pytest.mark.parametrize("positions_deg", [IN_ORDER, [37 * k for k in range(10)], ALIASED])
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    "positions_deg",
+    [IN_ORDER, pytest.param([37 * k for k in range(10)], marks=pytest.mark.long), ALIASED],
+)
 def test_an_eccentric_encoder_is_unknown(positions_deg: list[int], tmp_path: Path) -> None:
     """An error of 120 arcsec once an output turn, over a few input turns."""
     zeros = 120 * np.sin(np.radians(np.array(positions_deg)) / RATIO + 0.4)
@@ -55,7 +59,15 @@ def test_an_eccentric_encoder_is_unknown(positions_deg: list[int], tmp_path: Pat
     assert outcome.unexplained[0].channel == "input_angle_deg"
 
 
-@pytest.mark.parametrize(("step_deg", "count"), [(37, 20), (45, 16), (70, 16), (90, 14), (120, 16)])
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    ("step_deg", "count"),
+    [
+        (37, 20),
+        (90, 14),
+        *(pytest.param(step, 16, marks=pytest.mark.long) for step in (45, 70, 120)),
+    ],
+)
 def test_an_eccentric_encoder_is_unknown_where_a_rig_records_one_turn(
     step_deg: int, count: int, tmp_path: Path
 ) -> None:
@@ -68,7 +80,7 @@ def test_an_eccentric_encoder_is_unknown_where_a_rig_records_one_turn(
     assert not {c.id for c in outcome.causes} & {DRIFT, KINEMATIC}
 
 
-@pytest.mark.parametrize("step_deg", [37, 90])
+@pytest.mark.parametrize("step_deg", [37, pytest.param(90, marks=pytest.mark.long)])
 def test_a_drift_is_one_where_a_rig_records_one_turn(step_deg: int, tmp_path: Path) -> None:
     outcome = diagnosed(
         tmp_path, [step_deg * k % 360 for k in range(14)], np.zeros(14), 40.0

@@ -52,8 +52,13 @@ def diagnosed(friction_Nm: float, folder: Path, one_sided: bool = False) -> Diag
     return diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), path, 31329.0, 43339.0)
 
 
-def test_the_deviation_is_what_the_other_place_moves_the_size_by(tmp_path: Path) -> None:
-    found = diagnosed(0.6, tmp_path)
+@pytest.fixture(scope="module")
+def both_sides(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+    return diagnosed(0.6, tmp_path_factory.mktemp("both"))
+
+
+def test_the_deviation_is_what_the_other_place_moves_the_size_by(both_sides: Diagnosis) -> None:
+    found = both_sides
     assert found.sweep is not None
     fit = found.sweep.explained.identified.fit
     assert fit.evidence.columns.ahead is None
@@ -74,7 +79,9 @@ def test_the_deviation_is_what_the_other_place_moves_the_size_by(tmp_path: Path)
     assert cause.magnitude_std > hardening_std(fit)
 
 
-def test_where_torque_stays_on_one_side_the_width_at_zero_is_as_open(tmp_path: Path) -> None:
+def test_where_torque_stays_on_one_side_the_width_at_zero_is_as_open(
+    both_sides: Diagnosis, tmp_path: Path
+) -> None:
     """Loops between 0 and the largest torque close at T = 0; the record shows none that crosses it."""
     torque, friction_Nm = triangle(), 0.6
     angle, last = twist(torque, friction_Nm), slice(-PER_CYCLE, None)
@@ -85,7 +92,7 @@ def test_where_torque_stays_on_one_side_the_width_at_zero_is_as_open(tmp_path: P
         at_zero.append(np.interp(0.0, torque[last][way][order], angle[last][way][order]))
     truth = at_zero[0] - at_zero[1]
     for one_sided in (False, True):
-        found = diagnosed(friction_Nm, tmp_path, one_sided)
+        found = diagnosed(friction_Nm, tmp_path, one_sided) if one_sided else both_sides
         (cause,) = (c for c in found.causes if c.id == FRICTION)
         assert found.sweep is not None
         fit = found.sweep.explained.identified.fit

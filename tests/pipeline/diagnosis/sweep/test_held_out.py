@@ -75,7 +75,8 @@ def softened(
 
 
 @pytest.mark.parametrize(
-    ("rows", "wrong"), [(12_000, 0), pytest.param(12_000, 30, marks=pytest.mark.long), (800, 30)]
+    ("rows", "wrong"),
+    [*(pytest.param(12_000, n, marks=pytest.mark.long) for n in (0, 30)), (800, 30)],
 )
 def test_rows_judged_are_those_of_the_file(rows: int, wrong: int, tmp_path: Path) -> None:
     """Where a long record is judged by means, and behind rows that were left out as wrong readings."""

@@ -72,10 +72,11 @@ def rig(
     return prepare(as_read(history, angle), PREDICTION)
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
     ("periods_s", "filter_s"),
     [
-        pytest.param(ONE_RATE, 0.5, id="one rate, quick"),
+        pytest.param(ONE_RATE, 0.5, id="one rate, quick", marks=pytest.mark.long),
         pytest.param(FOUR_RATES, 1.5, id="four rates, slow"),
         pytest.param(ONE_RATE, 1.5, id="one rate, slow", marks=pytest.mark.long),
         pytest.param(FOUR_RATES, 0.5, id="four rates, quick", marks=pytest.mark.long),
@@ -190,7 +191,9 @@ def test_friction_of_a_form_that_no_element_has_is_no_late_reading() -> None:
     assert [c["id"] for c in found["causes"]] == ["friction_hysteresis"]
 
 
-@pytest.mark.parametrize("friction_Nm", [1.5, 3.0, 9.0])
+@pytest.mark.parametrize(
+    "friction_Nm", [1.5, *(pytest.param(f, marks=pytest.mark.long) for f in (3.0, 9.0))]
+)
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=pytest.mark.long) for s in (1, 2))])
 def test_coulomb_friction_ahead_of_the_teeth_at_one_rate_is_no_late_reading(
     friction_Nm: float, seed: int, tmp_path: Path

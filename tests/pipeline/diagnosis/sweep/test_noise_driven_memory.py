@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from histories import PREDICTION, sweep
 from read_sweep import as_read
 
@@ -12,9 +13,11 @@ from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
-HISTORY = replace(sweep(cycles=24, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
+pytestmark = pytest.mark.usefixtures("causes_only")
+
+HISTORY = replace(sweep(cycles=12, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
 TORQUE_NOISE_Nm, ANGLE_NOISE = 0.02, 0.05
-"""0.2 arcsec by the compliance, known to 3 milliarcsec from 4800 rows; arcsec."""
+"""0.2 arcsec by the compliance, known to 4 milliarcsec from 2400 rows; arcsec."""
 
 
 def lagging(share: float, seed: int) -> DiagnosisOutcome:

@@ -47,7 +47,12 @@ def diagnosed(
 
 @pytest.mark.parametrize(
     ("programme", "rows"),
-    [("triangle", 6000), ("sine", 6000), ("rests at zero", 20_000), ("triangle", 36_000)],
+    [
+        ("triangle", 6000),
+        pytest.param("sine", 6000, marks=pytest.mark.long),
+        ("rests at zero", 20_000),
+        pytest.param("triangle", 36_000, marks=pytest.mark.long),
+    ],
 )
 def test_a_gear_without_effects_is_told_so(tmp_path: Path, programme: str, rows: int) -> None:
     """The gap by a straight line of 700 readings on either side of each crossing: to about 0.1 arcsec."""

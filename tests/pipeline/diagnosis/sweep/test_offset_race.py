@@ -8,13 +8,21 @@ from hidden.cases import draw_case
 from hidden.mark import mark
 
 
+@pytest.mark.long
 def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> None:
     """A staircase, read 0.316 N·m too low; the place found from its first race, 0.268, passes some rows."""
     found = mark(draw_case(1600001, 55), diagnose)
     assert (found.verdict, found.found) == ("named", ("torque_offset",))
 
 
-@pytest.mark.parametrize(("number", "kind"), [(69, "single"), (497, "single"), (212, "pair")])
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    ("number", "kind"),
+    [
+        *(pytest.param(n, "single", marks=pytest.mark.long) for n in (69, 497)),
+        (212, "pair"),
+    ],
+)
 def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int, kind: str) -> None:
     """The first was taken, 35 to 44 % too large: far from zero, more rows tell it from no offset."""
     found = mark(draw_case(4100001, number, kind), diagnose)
@@ -22,6 +30,8 @@ def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int,
     assert size.deviations < 2
 
 
+@pytest.mark.long
+@pytest.mark.usefixtures("causes_only")
 def test_a_gap_that_temperature_changes_is_crossed_where_its_rows_say() -> None:
     """70 to 11 arcsec, and a reading 1.424 N·m too high: 1.256 was said with 0.009 N·m of doubt.
 

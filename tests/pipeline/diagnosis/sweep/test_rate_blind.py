@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from flexspline.pipeline.diagnosis.decision import EVEN_ODDS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.rate_blind import (
@@ -83,6 +85,7 @@ def test_only_a_twist_that_follows_the_rate_does(follows: bool) -> None:
     assert follows_rate(now, Search(now).candidate(chosen)) == follows
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_lag_beside_friction_is_found() -> None:
     rate, friction = known_causes()["rate_dependence"], known_causes()["friction_hysteresis"]
     twist = rate.columns(shape_of("rate_dependence", VARIED, exponent=0.6), VARIED)[:, 0]
@@ -130,16 +133,27 @@ def found_in(
     added: np.ndarray, history: History = SINE, seed: int = 11
 ) -> dict[str, tuple[str, ...]]:
     """Causes found and their rivals in a sweep that reads these angles [arcsec] beside the simulated."""
+    return {c.id: c.alternatives for c in outcome_of(added, history, seed).causes}
+
+
+def outcome_of(added: np.ndarray, history: History, seed: int = 11) -> DiagnosisOutcome:
     angle = PREDICTION.angle_arcsec(history) + added
     angle = angle + np.random.default_rng(seed).normal(0, NOISE, len(angle))
-    record = as_read(history, angle)
-    return {c.id: c.alternatives for c in diagnose_sweep(record, PREDICTION)[0].causes}
+    return diagnose_sweep(as_read(history, angle), PREDICTION)[0]
 
 
+@cache
+def rubbing_at_a_sine() -> DiagnosisOutcome:
+    """What two tests compare with."""
+    return outcome_of(rubbing(SINE), SINE)
+
+
+@pytest.mark.usefixtures("causes_only")
 def test_at_one_rate_a_loop_that_one_of_the_two_makes_has_its_name() -> None:
     """A lag's loop of a sine is an ellipse; Coulomb friction's is a parallelogram."""
     assert found_in(lagging(SINE)) == {"rate_dependence": ()}
-    assert found_in(rubbing(SINE)) == {"friction_hysteresis": ()}
+    (friction,) = rubbing_at_a_sine().causes
+    assert (friction.id, friction.alternatives) == ("friction_hysteresis", ())
 
 
 RAMPS = replace(SINE, torque_Nm=np.tile(LARGEST * 2 / np.pi * np.arcsin(np.sin(TURN)), 5))
@@ -155,7 +169,10 @@ def test_rates_within_a_record_tell_a_sine_from_ramps() -> None:
     assert noisy < RATES_WITHIN
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2))]
+)
 def test_on_straight_ramps_at_one_rate_a_rate_dependence_is_never_without_friction(
     seed: int,
 ) -> None:
@@ -167,29 +184,27 @@ def test_on_straight_ramps_at_one_rate_a_rate_dependence_is_never_without_fricti
     assert found.get("rate_dependence", ("friction_hysteresis",)) == ("friction_hysteresis",)
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_on_straight_ramps_at_one_rate_a_lag_is_not_told_from_friction() -> None:
     assert found_in(lagging(RAMPS), RAMPS)["rate_dependence"] == ("friction_hysteresis",)
 
 
-@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("timed", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_rival_that_the_programme_leaves_open_has_even_odds(timed: bool) -> None:
     """On straight ramps at one rate, or without time: no explanation of the race stands for it."""
     history = RAMPS if timed else replace(SINE, time_s=None)
     added = lagging(RAMPS) if timed else rubbing(SINE)
-    angle = PREDICTION.angle_arcsec(history) + added
-    angle += np.random.default_rng(11).normal(0, NOISE, len(angle))
-    outcome = diagnose_sweep(as_read(history, angle), PREDICTION)[0]
+    outcome = outcome_of(added, history)
     assert outcome.verdict == "ambiguous"
     (cause,) = outcome.causes
     assert {cause.id, *cause.alternatives} == {"rate_dependence", "friction_hysteresis"}
     assert cause.probability == EVEN_ODDS
     # nor is an effect that has no such rival less likely
-    told = PREDICTION.angle_arcsec(SINE) + rubbing(SINE)
-    told += np.random.default_rng(11).normal(0, NOISE, len(told))
-    (sure,) = diagnose_sweep(as_read(SINE, told), PREDICTION)[0].causes
+    (sure,) = rubbing_at_a_sine().causes
     assert sure.probability > 0.99
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:
     """Friction whose thresholds are spread in some way has this loop by itself."""
     found = found_in(lagging(SINE) + rubbing(SINE))
@@ -199,6 +214,7 @@ def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:
     }
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_loop_that_no_element_of_friction_has_is_no_lag() -> None:
     """Bristles ahead of the teeth, at nine rates: once friction and rate dependence, beyond doubt."""
     found = diagnose(draw_case(980113, 2, "pair", "friction_ahead"))

@@ -133,6 +133,7 @@ def test_a_lock_that_follows_beyond_its_capacity_is_among_the_columns() -> None:
     assert min(np.abs(c - way).max() for c in columns) < 1e-12
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
     """Held at 2 N·m it goes on by 0.04 arcsec a second for 500 s; creep would come back at zero."""
     rng = np.random.default_rng(1)
@@ -146,8 +147,15 @@ def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
     assert outcome.unexplained[0].structure == (UnnamedForm("gives_way"),)
 
 
+@pytest.mark.usefixtures("causes_only")
 @pytest.mark.parametrize(
-    ("kind", "number"), [("lock_slips", 2), ("lock_yields", 1), ("ringing", 1), ("stick_slip", 4)]
+    ("kind", "number"),
+    [
+        ("lock_slips", 2),
+        pytest.param("lock_yields", 1, marks=pytest.mark.long),
+        ("ringing", 1),
+        pytest.param("stick_slip", 4, marks=pytest.mark.long),
+    ],
 )
 def test_hidden_in_a_made_up_record_it_has_no_name(kind: str, number: int) -> None:
     assert diagnose(draw_case(71, number, "foreign", kind))["verdict"] == "unknown"
@@ -210,7 +218,7 @@ def test_jumps_against_the_motion_are_none() -> None:
     assert jumps(saw_tooth(-1.0)) is None
 
 
-@pytest.mark.parametrize("rows_a_second", [10, 100])
+@pytest.mark.parametrize("rows_a_second", [10, pytest.param(100, marks=pytest.mark.long)])
 def test_corners_by_a_clock_of_whole_seconds(rows_a_second: int) -> None:
     """On both sides of a corner all rows may have one time; LAPACK once ended in a traceback there."""
     history = replace(sweep(cycles=2, rows=240, hold=0), temperature_C=None, input_angle_deg=None)

@@ -23,13 +23,14 @@ DESIGN = load_design(EXAMPLES / "xb1-40.toml")
         # creep of 4.4 ± 0.3 %/decade had ± 2.4 from springs that hardening was said to hide
         97,
         # a stiffness of three positions left the compliance open, and friction was said to be a spring
-        89,
+        pytest.param(89, marks=pytest.mark.long),
     ],
 )
 def test_three_causes_are_named(number: int) -> None:
     assert mark(draw_case(3000001, number, "triple"), diagnose).exact
 
 
+@pytest.mark.usefixtures("causes_only")
 def test_a_lag_beside_a_strong_hardening_is_no_trace_of_it(tmp_path: Path) -> None:
     """A Kelvin element of 1 % of the compliance and 8 s beside K1 < K2 < K3, at three rates; the twist of the
     soft wind-up is 40 times the lag's, most of it straight."""

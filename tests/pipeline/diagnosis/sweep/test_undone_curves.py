@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 K_B, K_E = 31_300.0, 44_000.0
 COMPLIANCE = ARCSEC_PER_RAD * (1 / K_B + 1 / K_E)
@@ -69,7 +71,10 @@ def diagnosed(
     return diagnose_file(DESIGN, path, K_B, K_E)
 
 
-@pytest.mark.parametrize(("knee_Nm", "softer", "seed"), [(10 / 3, 0.25, 1), (2.5, 0.4, 3)])
+@pytest.mark.parametrize(
+    ("knee_Nm", "softer", "seed"),
+    [pytest.param(10 / 3, 0.25, 1, marks=pytest.mark.long), (2.5, 0.4, 3)],
+)
 def test_softening_beside_friction_is_no_hardening(
     knee_Nm: float, softer: float, seed: int, tmp_path: Path
 ) -> None:
@@ -79,7 +84,9 @@ def test_softening_beside_friction_is_no_hardening(
     assert FRICTION in named
 
 
-@pytest.mark.parametrize(("knee_Nm", "seed"), [(2.5, 5), (3.0, 5)])
+@pytest.mark.parametrize(
+    ("knee_Nm", "seed"), [(2.5, 5), pytest.param(3.0, 5, marks=pytest.mark.long)]
+)
 def test_softening_alone_is_no_stiffer_gear(knee_Nm: float, seed: int, tmp_path: Path) -> None:
     """Below the knee it is as simulated, beyond it softer."""
     rising = FALLING_Nm[::-1]

@@ -72,12 +72,16 @@ def diagnosed(folder: Path, unit_of: np.ndarray, loop_arcsec: float) -> Diagnosi
     return diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), csv, K_B, K_E)
 
 
-@pytest.mark.parametrize("unit_of", [np.zeros(4, int), np.arange(4) // 2])
+@pytest.mark.parametrize(
+    "unit_of", [pytest.param(np.zeros(4, int), marks=pytest.mark.long), np.arange(4) // 2]
+)
 def test_a_gear_without_effects_is_told_so(tmp_path: Path, unit_of: np.ndarray) -> None:
     assert diagnosed(tmp_path, unit_of, 0.0).verdict == "consistent"
 
 
-@pytest.mark.parametrize("unit_of", [np.zeros(4, int), np.arange(4) // 2])
+@pytest.mark.parametrize(
+    "unit_of", [pytest.param(np.zeros(4, int), marks=pytest.mark.long), np.arange(4) // 2]
+)
 def test_friction_is_found_beside_it(tmp_path: Path, unit_of: np.ndarray) -> None:
     found = diagnosed(tmp_path, unit_of, LOOP)
     assert found.verdict == "named"

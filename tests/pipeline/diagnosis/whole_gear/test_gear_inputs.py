@@ -24,6 +24,8 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({
     "shaft.bolt_count": 0,
     "gear.module_mm": 0.4, "gear.teeth_flexspline": 100, "gear.teeth_circular_spline": 102,
@@ -58,9 +60,28 @@ def diagnosed(
     return diagnose_file(DESIGN, path, 31_300.0, 44_000.0, chain=chain)
 
 
+def bends(torque: np.ndarray) -> np.ndarray:
+    """Several arcsec that come and go with torque."""
+    return 8 * np.sin(torque)
+
+
+@pytest.fixture(scope="module")
+def as_drawn(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+    return diagnosed(chain, chain, tmp_path_factory.mktemp("drawn") / "a.csv")
+
+
+@pytest.fixture(scope="module")
+def bent(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+    return diagnosed(chain, chain, tmp_path_factory.mktemp("bent") / "a.csv", more=bends)
+
+
 @pytest.mark.parametrize(
     ("key", "factor"),
-    [pytest.param(FLANK, 2.0, marks=pytest.mark.long), (PLAY, 1.6), (STROKE, 1.025)],
+    [
+        pytest.param(FLANK, 2.0, marks=pytest.mark.long),
+        (PLAY, 1.6),
+        pytest.param(STROKE, 1.025, marks=pytest.mark.long),
+    ],
 )
 def test_the_changed_input_is_named_with_its_size(
     chain: Chain, tmp_path: Path, key: str, factor: float
@@ -80,30 +101,32 @@ def test_the_changed_input_is_named_with_its_size(
     assert key in gear_inputs_notes(found)[0]
 
 
-def test_the_gear_as_drawn_leaves_nothing_to_explain(chain: Chain, tmp_path: Path) -> None:
-    found = diagnosed(chain, chain, tmp_path / "a.csv").gear_inputs
+def test_the_gear_as_drawn_leaves_nothing_to_explain(as_drawn: Diagnosis) -> None:
+    found = as_drawn.gear_inputs
     assert found is not None
     assert found.outcome == "consistent"
     assert "named" not in gear_inputs_record(found)
 
 
 def test_an_input_that_moves_nothing_has_no_value(
-    chain: Chain, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    chain: Chain, as_drawn: Diagnosis, bent: Diagnosis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     idle = GearInput("idle", "mm", 1.0, 0.0, 2.0, 0.1, lambda chain, value: chain)
     monkeypatch.setattr(identification, "inputs_of", lambda design, chain: (idle,))
-    found = diagnosed(chain, chain, tmp_path / "a.csv").gear_inputs
+    assert as_drawn.sweep is not None
+    found = identification.gear_inputs(DESIGN, chain, as_drawn.sweep)
     assert found is not None
     assert (found.outcome, found.fitted) == ("consistent", ())
-    bent = diagnosed(chain, chain, tmp_path / "b.csv", more=lambda t: 8 * np.sin(t)).gear_inputs
-    assert bent is not None
-    assert bent.outcome == "unknown"
-    assert json.dumps(gear_inputs_record(bent), allow_nan=False)
+    assert bent.sweep is not None
+    found = identification.gear_inputs(DESIGN, chain, bent.sweep)
+    assert found is not None
+    assert found.outcome == "unknown"
+    assert json.dumps(gear_inputs_record(found), allow_nan=False)
 
 
-def test_a_twist_of_another_kind_is_not_named(chain: Chain, tmp_path: Path) -> None:
-    """Several arcsec that come and go with torque: no clearance and no spring does that."""
-    found = diagnosed(chain, chain, tmp_path / "a.csv", more=lambda t: 8 * np.sin(t)).gear_inputs
+def test_a_twist_of_another_kind_is_not_named(bent: Diagnosis) -> None:
+    """No clearance and no spring does that."""
+    found = bent.gear_inputs
     assert found is not None
     assert found.outcome == "unknown"
     assert "no one or two inputs" in gear_inputs_notes(found)[0]
