@@ -21,8 +21,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
@@ -136,7 +134,7 @@ def diagnose_measurement(
             raise MeasurementError(
                 measurement.path, None, "is not a torque sweep; only that is held against the gear"
             )
-        largest = float(np.abs(measurement.history.torque_Nm).max())
+        largest = measurement.history.largest_Nm
         if largest > 0:
             from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
             from flexspline.pipeline.diagnosis.whole_gear.scaled_bend import with_scaled_bend

@@ -157,7 +157,7 @@ def last_direction(step: np.ndarray) -> np.ndarray:
 
 def direction_of_loading(history: History) -> np.ndarray:
     """`rising`, by reversals larger than any noise that the torque may have."""
-    return rising(history, LARGEST_NOISE * float(np.abs(history.torque_Nm).max()))
+    return rising(history, LARGEST_NOISE * history.largest_Nm)
 
 
 def dahl(

@@ -90,6 +90,11 @@ class History:
         return np.sign(self.torque_Nm)
 
     @cached_property
+    def largest_Nm(self) -> float:
+        """Largest torque, of either sign."""
+        return float(np.abs(self.torque_Nm).max())
+
+    @cached_property
     def unit_slices(self) -> list[np.ndarray]:
         """Row indices of each unit, in order."""
         return [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]

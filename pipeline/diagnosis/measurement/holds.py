@@ -38,7 +38,7 @@ def holds(history: History) -> list[np.ndarray]:
     fast = ramp_rate(history)
     if fast == 0:
         return []
-    span = HOLD_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
+    span = HOLD_RANGE_SHARE * history.largest_Nm
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST_HOLD_ROWS:

@@ -127,14 +127,14 @@ def ramp_rate(history: History) -> float:
 def ramp_s(history: History) -> float:
     """Time of a ramp from zero to the largest torque, 0 without time or movement."""
     rate = ramp_rate(history)
-    return float(np.abs(history.torque_Nm).max()) / rate if rate > 0 else 0.0
+    return history.largest_Nm / rate if rate > 0 else 0.0
 
 
 def slowest_ramp_s(history: History) -> float:
     """Time of a ramp from zero to the largest torque at the slowest cycle's rate; 0 where no cycle says."""
     rates = [cycle_rate(history, rows) for rows in history.cycle_slices]
     slowest = min((r for r in rates if r > 0), default=0.0)
-    return float(np.abs(history.torque_Nm).max()) / slowest if slowest > 0 else 0.0
+    return history.largest_Nm / slowest if slowest > 0 else 0.0
 
 
 def shortest_lag_s(history: History) -> float:

@@ -6,7 +6,6 @@ instead of FE, from them, scaled by the ratio of the hole-free axisymmetric mode
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 
 from flexspline.fea.shortfall import settled
@@ -28,12 +27,6 @@ than ten times as much."""
 BENCH_LOBE_WIDTH = 5e-3
 """The same at the lobes, whose harmonics cost more: of the example cup (K_b 31 377 uniform, 26 832 at the
 lobes) it is 3 % of the way between them, a quarter of the narrower prior in `parameters.ZONES`."""
-PARTS: Mapping[str, tuple[PartName, ...]] = {
-    "flexspline": ("flexspline",),
-    "shaft": ("shaft",),
-    "series": ("flexspline", "shaft"),
-}
-"""Parts in a row, by what its column `part` says."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     nats_over,
     step_misfit,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, on_both_sides
 
 LARGEST_FRICTION = 0.45
 """Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
@@ -52,8 +52,8 @@ def first_ahead(
     beyond a play operator changes sign; the play's width is the guess, if it is clearly better than none, and
     than a shifted torque reading; or both, if they are clearly better than either.
     """
-    largest = float(np.abs(history.torque_Nm).max())
-    if not both_ways(history.torque_Nm):
+    largest = history.largest_Nm
+    if not on_both_sides(history.torque_Nm):
         return None
     torque = steadied(history, deadband_Nm(history))
     coarse = np.linspace(0, LARGEST_FRICTION, COARSE_PLACES + 1)[1:] * largest

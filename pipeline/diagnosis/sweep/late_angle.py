@@ -41,7 +41,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.search import NAMED_COST
 from flexspline.pipeline.diagnosis.sweep.step_place import DEPENDENT
-from flexspline.pipeline.diagnosis.sweep.torque_offset import both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import on_both_sides
 
 COARSE_EVERY = 3
 """Of the forms, every third is tried at first: where no late angle is the best of these, none is. Else those
@@ -73,7 +73,7 @@ def late_angle_of(
     torque reading, or a twist that lags. What a race `explained` by causes may be there in any size.
     """
     history = less_jitter(prepared.sweep.history)
-    if ramp_s(history) == 0 or not both_ways(history.torque_Nm):
+    if ramp_s(history) == 0 or not on_both_sides(history.torque_Nm):
         return None
     gap = prepared.prediction.gap_arcsec
     angle, noise = prepared.sweep.angle_arcsec, prepared.noise.std_arcsec
@@ -152,7 +152,7 @@ def _behind(alone: _Searched, whole: _Searched) -> float:
 def _rubbed(crossed: CrossedRecord, friction: CrossingFit) -> list[CrossingFit]:
     """The best friction near one of the first search, alone and beside a shifted reading."""
     history, coarse = crossed.history, friction.tried.value
-    apart = float(np.abs(history.torque_Nm).max()) / 100
+    apart = history.largest_Nm / 100
 
     def near(offset_Nm: float) -> CrossingFit:
         fine = np.maximum(coarse + apart * np.linspace(-1, 1, 4 * FINE_TIMES + 1), apart / 100)

@@ -45,7 +45,7 @@ MORE_CYCLES = 40
 def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     """Each plan holds a part like the record so far and a part where one thing is changed."""
     h = prepared.rig.history
-    largest = float(np.abs(prepared.sweep.history.torque_Nm).max())
+    largest = prepared.sweep.history.largest_Nm
     ramp = ramp_s(prepared.sweep.history) or DEFAULT_RAMP_S
     warm = float(np.mean(h.temperature_C)) if h.temperature_C is not None else REFERENCE_C
     last = int(h.cycle.max())
@@ -118,7 +118,7 @@ def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
     quickest, slowest = rate_range(history)
     if quickest < FASTER * slowest or slowest == 0:
         return FASTER, 1 / FASTER, False
-    typical = float(np.abs(history.torque_Nm).max()) / ramp_s
+    typical = history.largest_Nm / ramp_s
     return FASTER * typical / slowest, typical / (FASTER * quickest), True
 
 
