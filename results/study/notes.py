@@ -198,4 +198,5 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
 
 
 def _percent(value: float) -> str:
-    return f"{signed(value, 1)} %" if abs(value) >= 0.05 else "less than 0.05 %"
+    least = 0.05  # less is 0.0 in print
+    return f"{signed(value, 1)} %" if abs(value) >= least else f"less than {least:g} %"

@@ -107,7 +107,7 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     forms = [*by_time, at_a_place(history), softly(history), behind_friction(history)]
     coarse = replace(crossed, most_rows=COARSE_ROWS)
     fits = [coarse.best(tried[::COARSE_EVERY]) for tried in forms]
-    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+    best, own = _best_of(fits)
     # local polynomials take the gap's step for noise: what the best form leaves is less
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     if best is not own:
@@ -117,12 +117,17 @@ def _searched(crossed: CrossedRecord) -> _Searched:
         if own.log_likelihood < finer[1].log_likelihood:
             return _Searched(crossed, own, finer[1]).without_other_loops()
     fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
-    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+    best, own = _best_of(fits)
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     others = [crossed.of(fit.tried) for fit in fits[len(LATE_KINDS) :]]
     others += _rubbed(crossed, friction=fits[-1])
     own = crossed.best(_times_about(history, own.tried))
     return _Searched(crossed, own, max(others, key=likeliest)).without_other_loops()
+
+
+def _best_of(fits: list[CrossingFit]) -> tuple[CrossingFit, CrossingFit]:
+    """The likeliest of all, and of the late angles, which stand first."""
+    return max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
 
 
 def _times_about(history: History, tried: Tried) -> list[Tried]:
