@@ -28,8 +28,8 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 
 ROOT = Path(__file__).parents[1]
 CATALOGUE = ROOT / "examples" / "catalogue"
-TOLERANCE = 0.005
-"""Of K_e in the catalogue's rows."""
+RELATIVE_WIDTH = 0.005
+"""Of the bounds of K_e in the catalogue's rows."""
 STEP = 1.2
 """By which each proportion is changed for its sensitivity."""
 
@@ -85,7 +85,7 @@ def rows() -> Iterator[Row]:
 def sized(size: float, ratio: int) -> tuple[GearModel, float]:
     """The contact model of `flexspline init cup`, and its shaft's compliance [rad/(N·m)]."""
     design = sized_design(size, ratio)
-    shaft = revolved.stiffness(design, "shaft", TOLERANCE).K_Nm_per_rad
+    shaft = revolved.stiffness(design, "shaft", RELATIVE_WIDTH).K_Nm_per_rad
     return gear_model(design, design.part("flexspline")), 1 / shaft
 
 
@@ -239,7 +239,7 @@ def sensitivity(size: float, ratio: int, torques: tuple[float, ...]) -> str:
         (name, np.array(slopes(Chain(change(design, own), 0.0, 0.0), torques)) / base)
         for name, change in CHANGES
     ]
-    shaft = 1 / revolved.stiffness(design, "shaft", TOLERANCE).K_Nm_per_rad
+    shaft = 1 / revolved.stiffness(design, "shaft", RELATIVE_WIDTH).K_Nm_per_rad
     found.append(("with its shaft", np.array(slopes(Chain(own, shaft, 0.0), torques)) / base))
     found.sort(key=lambda each: -float(np.abs(np.log(each[1])).max()))
     return "\n".join(f"| {name} | {' | '.join(f'{x:.2f}' for x in r)} |" for name, r in found)

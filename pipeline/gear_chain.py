@@ -88,8 +88,8 @@ def chain_of(context: AnalysisContext, K_e_Nm_per_rad: float | None = None) -> C
     return Chain(model, 1 / K_e, holes)
 
 
-def fast_chain(design: Design, K_e_Nm_per_rad: float, tolerance: float) -> Chain:
-    """The same with a shaft that is known already; `tolerance` of what the bolt holes do, relative.
+def fast_chain(design: Design, K_e_Nm_per_rad: float, relative_width: float) -> Chain:
+    """The same with a shaft that is known already; `relative_width` of the K that tell what bolt holes do.
 
     Raises
     ------
@@ -97,14 +97,14 @@ def fast_chain(design: Design, K_e_Nm_per_rad: float, tolerance: float) -> Chain
     ComputationError
     """
     part = revolved.with_equivalent_ring(design).part("flexspline")
-    return Chain(gear_model(design, part), 1 / K_e_Nm_per_rad, _of_holes(part, tolerance))
+    return Chain(gear_model(design, part), 1 / K_e_Nm_per_rad, _of_holes(part, relative_width))
 
 
-def _of_holes(part: Part, tolerance: float) -> float:
+def _of_holes(part: Part, relative_width: float) -> float:
     """What bolt holes add [rad/(N·m)], by K_b of the case `uniform`: 1/K with them less 1/K without."""
     if part.bolts is None:
         return 0.0
     own, filled = (
-        revolved.torsion(each, tolerance).K_Nm_per_rad for each in (part, part.without_holes())
+        revolved.torsion(each, relative_width).K_Nm_per_rad for each in (part, part.without_holes())
     )
     return max(0.0, 1 / own - 1 / filled)

@@ -35,7 +35,7 @@ class LoadCase:
 
     `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part. It
     takes the part and, as `known`, the relative half-width of the bounds that these give.
-    `fast` is for studies and the live page: of a part, to a relative tolerance, nothing written to the cache.
+    `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
     title: str
@@ -94,15 +94,18 @@ def _by_itself(
     """A case that `solve` answers on a meridian without another case's answer."""
 
     def of_part(flexspline: PartModel) -> Stiffness:
-        own, tolerance = flexspline.material, flexspline.tolerance
+        own, width = (
+            flexspline.material,
+            flexspline.tolerance,
+        )  # the whole width: half of what is asked
         return by_harmonics(
             flexspline,
             figure_of(case),
             title,
-            lambda outline, deadline: Refining(solve(outline, own, tolerance, deadline)).last(),
+            lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
         )
 
-    return LoadCase(title, of_part, solid, lambda part, tolerance: rim(part, solve, tolerance))
+    return LoadCase(title, of_part, solid, lambda part, width: rim(part, solve, width))
 
 
 def _resting(flexspline: PartModel) -> Stiffness:

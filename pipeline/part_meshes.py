@@ -134,6 +134,9 @@ class PartMeshes:
     def _coarsened_layers(self, spec: MeshSpec) -> LayeredMesh:
         """To a specification, or to a coarser one where it has more than FIRST_ELEMENTS elements by that.
 
+        As `coarsened`, but that a mesh in layers is given up midway: nothing says how many elements it would
+        have had, and whether longer edges leave fewer.
+
         Raises
         ------
         MeshQualityError, MeshingError, TooManyElementsError : as `layered_mesh`.
@@ -170,29 +173,25 @@ class PartMeshes:
         spec = before = model.first_spec
         if not model.is_swept or "swept" not in self.kinds or model.states_edges:
             return spec
-        last, elements = False, inf
-        for tried in range(COARSENINGS + 1):
-            last |= tried == COARSENINGS
-            most = self.most_of_first if last else most_elements
+        elements = inf
+        for _ in range(COARSENINGS):
             try:
-                with model.context.progress.stage(f"mesh of the {model.name}"):
-                    swept = self.swept(spec, most_elements=most)
+                return self._swept_or(before, spec, most_elements)
             except TooManyElementsError as fault:
-                if last:
-                    raise
                 if fault.elements > HARDLY_FEWER * elements:
-                    last, spec = True, before
-                else:
-                    elements, spec, before = fault.elements, spec.scaled(COARSER_EDGES), spec
-                continue
-            if swept is None:
-                return before
-            self._keep(spec, swept)
-            break
-        return spec
+                    spec = before
+                    break
+                elements, spec, before = fault.elements, spec.scaled(COARSER_EDGES), spec
+        return self._swept_or(before, spec, self.most_of_first)
 
-    def _keep(self, spec: MeshSpec, made: MeshedPart) -> None:
-        self._kept(spec, lambda: made)
+    def _swept_or(self, before: MeshSpec, spec: MeshSpec, most_elements: float) -> MeshSpec:
+        """`spec`, whose swept mesh is kept; or the one before, where that fails a check."""
+        with self.model.context.progress.stage(f"mesh of the {self.model.name}"):
+            swept = self.swept(spec, most_elements=most_elements)
+        if swept is None:
+            return before
+        self._kept(spec, lambda: swept)
+        return spec
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.

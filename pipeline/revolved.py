@@ -3,8 +3,9 @@
 K_b of a flexspline with bolt holes lies between those of two bodies of revolution (`pipeline.enclosure`).
 Everything else leaves holes and keyway out, and drawn teeth are their plain ring. Every answer is
 proportional to Young's modulus or to a load: parts are solved for 1 GPa, 1 mm and 1 N·m and remembered, so
-another material, torque or clearance costs nothing, and a change of one part leaves the other. `tolerance`
-is relative, of K. Stress: `pipeline.revolved_stress`.
+another material, torque or clearance costs nothing, and a change of one part leaves the other.
+`relative_width` is the distance of K's bounds that is asked for, over K: ± half of it. Stress:
+`pipeline.revolved_stress`.
 """
 
 from __future__ import annotations
@@ -43,21 +44,21 @@ FIRST_HALF_WIDTH = 0.04
 designs did not hold, of 5.8 % and more; so far, times 4, all hold, K is within 2.4 %, and one mesh is enough
 for 134."""
 RimSolve = Callable[[Meridian, Elastic, float, Deadline], Iterator[Stiffness]]
-"""K_b of a body of revolution in a load case of its rim, by each mesh until the tolerance is met."""
+"""K_b of a body of revolution in a load case of its rim, by each mesh until its bounds are near enough."""
 
 
 def held_rim(
-    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+    outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
 ) -> Iterator[Stiffness]:
     """The lobe load, the seat held radially."""
-    return lobe_stiffnesses(outline, material, True, tolerance, deadline)
+    return lobe_stiffnesses(outline, material, True, relative_width, deadline)
 
 
 def free_rim(
-    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+    outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
 ) -> Iterator[Stiffness]:
     """The lobe load, the seat free."""
-    return lobe_stiffnesses(outline, material, False, tolerance, deadline)
+    return lobe_stiffnesses(outline, material, False, relative_width, deadline)
 
 
 def revolved(design: Design) -> Design:
@@ -78,7 +79,7 @@ def with_equivalent_ring(design: Design) -> Design:
     return AnalysisContext(design, cache, Progress()).part("flexspline").context.design
 
 
-def stiffness(design: Design, name: PartName, tolerance: float) -> Stiffness:
+def stiffness(design: Design, name: PartName, relative_width: float) -> Stiffness:
     """K_b of the load case "uniform", or K_e, of a design's part.
 
     Raises
@@ -87,46 +88,46 @@ def stiffness(design: Design, name: PartName, tolerance: float) -> Stiffness:
     ComputationError : as `torsion`.
     """
     part = with_equivalent_ring(design).part(name)
-    found = torsion(part, tolerance)
+    found = torsion(part, relative_width)
     return found if part.shape == design.part(name).shape else of_toothed(found)
 
 
-def torsion(part: Part, tolerance: float) -> Stiffness:
+def torsion(part: Part, relative_width: float) -> Stiffness:
     """K_b of the load case "uniform", or K_e.
 
-    `tolerance` is that of each body of revolution. What misses it has its reason in `shortfall`, here and
-    below.
+    `relative_width` is that of each body of revolution. What misses it has its reason in `shortfall`, here
+    and below.
 
     Raises
     ------
     NestingError
     ComputationError : no mesh, or no solution.
     """
-    return _of_holed(part, lambda body: _torsion(body, tolerance))
+    return _of_holed(part, lambda body: _torsion(body, relative_width))
 
 
-def lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
+def lobes(part: Part, supported: bool, relative_width: float) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
-    return rim(part, held_rim if supported else free_rim, tolerance)
+    return rim(part, held_rim if supported else free_rim, relative_width)
 
 
-def rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+def rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
     """K_b of a load case of the rim. Errors as `torsion`."""
-    return _of_holed(part, lambda body: _rim(body, solve, tolerance))
+    return _of_holed(part, lambda body: _rim(body, solve, relative_width))
 
 
-def first_rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+def first_rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
     """`rim` on the first mesh of each body that gives K to FIRST_HALF_WIDTH; to be asked for before it."""
 
     def enough(found: Stiffness) -> bool:
         return found.half_width <= FIRST_HALF_WIDTH
 
-    return _of_holed(part, lambda body: _begun(body, solve, tolerance).until(enough))
+    return _of_holed(part, lambda body: _begun(body, solve, relative_width).until(enough))
 
 
-def contact(part: Part, tolerance: float) -> Stiffness:
+def contact(part: Part, relative_width: float) -> Stiffness:
     """K_b under the lobe load, the seat resting on the wave generator; errors as `torsion`."""
-    return _of_holed(part, lambda body: _contact(body, tolerance))
+    return _of_holed(part, lambda body: _contact(body, relative_width))
 
 
 def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
@@ -151,20 +152,20 @@ def _elastic(part: Part) -> Elastic:
 
 
 @lru_cache(maxsize=KEPT_PARTS)
-def _torsion(part: Part, tolerance: float) -> Stiffness:
-    return torsional_stiffness(part.meridian, _elastic(part), part.driven, tolerance)
+def _torsion(part: Part, relative_width: float) -> Stiffness:
+    return torsional_stiffness(part.meridian, _elastic(part), part.driven, relative_width)
 
 
 @lru_cache(maxsize=KEPT_PARTS)
-def _rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
-    return _begun(part, solve, tolerance).last()
+def _rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
+    return _begun(part, solve, relative_width).last()
 
 
 @lru_cache(maxsize=BEGUN)
-def _begun(part: Part, solve: RimSolve, tolerance: float) -> Refining[Stiffness]:
-    return Refining(solve(part.meridian, _elastic(part), tolerance, NO_DEADLINE))
+def _begun(part: Part, solve: RimSolve, relative_width: float) -> Refining[Stiffness]:
+    return Refining(solve(part.meridian, _elastic(part), relative_width, NO_DEADLINE))
 
 
 @lru_cache(maxsize=KEPT_PARTS)
-def _contact(part: Part, tolerance: float) -> Stiffness:
-    return contact_stiffness(part.meridian, _elastic(part), _rim(part, held_rim, tolerance))
+def _contact(part: Part, relative_width: float) -> Stiffness:
+    return contact_stiffness(part.meridian, _elastic(part), _rim(part, held_rim, relative_width))

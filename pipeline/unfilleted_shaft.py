@@ -27,10 +27,10 @@ FILLETS = "its fillets"
 MOST_WITH_FILLETS = 60_000
 """Elements of the coarsest first mesh: 270 000 unknowns, 15 s of the processor and more. A shaft with fillets
 of 0.1 % of its diameter had 52 149, of 0.6 % 40 269; two without, of 36 561 and 37 857, take longer."""
-REVOLVED_TOLERANCE, SMALL_DIFFERENCE = 2e-3, 0.01
-"""Of K of both shafts without holes; and half of what they may differ by where fTetWild is not tried first.
-With fillets of 5 to 10 % of the diameter five random shafts were known to ± 8 to 15 % so, by fTetWild to
-± 0.2 to 0.6 % in as much time; those of 0.3 % differ by 0.01 to 3 %."""
+REVOLVED_WIDTH, SMALL_DIFFERENCE = 2e-3, 0.01
+"""Of the bounds of K of both shafts without holes, over K; and half of what they may differ by where fTetWild
+is not tried first. With fillets of 5 to 10 % of the diameter five random shafts were known to ± 8 to 15 % so,
+by fTetWild to ± 0.2 to 0.6 % in as much time; those of 0.3 % differ by 0.01 to 3 %."""
 REMEDY = "a stated solver.edge_length_mm meshes its fillets, however long that takes"
 DIFFER = Shortfall(f"{LESS} and {MORE} differ by more")
 
@@ -83,7 +83,7 @@ def _hardly_differ(model: PartModel, tolerance: float) -> bool:
     bodies = unfilleted_bodies(model.part)
     try:
         less, more = (
-            torsion(body.without_holes(), REVOLVED_TOLERANCE) for body in (bodies.cut, bodies.whole)
+            torsion(body.without_holes(), REVOLVED_WIDTH) for body in (bodies.cut, bodies.whole)
         )
     except ComputationError:
         return False

@@ -9,7 +9,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
     *(
         Quantity(
             f"{key}_Nm_per_rad",
-            f"{key}_Nm_per_rad",
             STIFFNESS_UNIT,
             f"{key} of the whole gear, {name}",
             f"K_{key[1]}",
@@ -24,7 +23,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         )
     ),
     *(
-        Quantity(key, key, "N·m", name, symbol, group="gear torque")
+        Quantity(key, "N·m", name, symbol, group="gear torque")
         for key, name, symbol in (
             ("T1_Nm", "Torque T1", "T_1"),
             ("T2_Nm", "Torque T2", "T_2"),
@@ -32,7 +31,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         )
     ),
     Quantity(
-        "lost_motion_arcsec",
         "lost_motion_arcsec",
         "arcsec",
         f"Lost motion, between ± {LOST_MOTION_TORQUE}",
@@ -43,7 +41,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "lost_motion_torque_Nm",
-        "lost_motion_torque_Nm",
         "N·m",
         "Torque of the lost motion, each way",
         "T_lm",
@@ -52,7 +49,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "free_angle_arcsec",
-        "free_angle_arcsec",
         "arcsec",
         "Free angle (clearance both ways), not in K1",
         "θ_0",
@@ -60,7 +56,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         group="gear",
     ),
     Quantity(
-        "teeth_in_contact",
         "teeth_in_contact",
         "",
         "Teeth in contact at rated torque",
@@ -71,14 +66,12 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "preload_tooth_force_N",
-        "preload_tooth_force_N",
         "N",
         "Largest tooth force without torque, where both flanks press",
         "F_0",
         digits=2,
     ),
     Quantity(
-        "buckling_torque_Nm",
         "buckling_torque_Nm",
         "N·m",
         "Buckling torque of the flexspline's tube, estimate",
@@ -87,7 +80,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         group="gear",
     ),
     Quantity(
-        "ratcheting_torque_Nm",
         "ratcheting_torque_Nm",
         "N·m",
         "Ratcheting torque, upper limit by loss of engagement",
@@ -98,7 +90,6 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
     *(
         Quantity(
             f"compliance_shares.{part}",
-            f"compliance_share_{part}",
             "",
             f"Share of the {name} in the compliance at rated torque",
             decimals=3,

@@ -24,7 +24,6 @@ def _stiffness(
     return (
         Quantity(
             value,
-            value,
             STIFFNESS_UNIT,
             name,
             symbol,
@@ -32,15 +31,13 @@ def _stiffness(
             note=note,
             short_name=short_name,
         ),
-        Quantity(
-            bounds, bounds, STIFFNESS_UNIT, f"Bounds of the {bounded}", symbol, "bounds", digits
-        ),
+        Quantity(bounds, STIFFNESS_UNIT, f"Bounds of the {bounded}", symbol, "bounds", digits),
     )
 
 
 QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("design", "design", "", "Design", kind="text"),
-    Quantity("version", "version", "", "Program version", kind="text"),
+    Quantity("design", "", "Design", kind="text"),
+    Quantity("version", "", "Program version", kind="text"),
     *_stiffness(
         "K_b",
         5,
@@ -88,7 +85,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "K_series_Nm_per_rad",
-        "K_series_Nm_per_rad",
         STIFFNESS_UNIT,
         "Series stiffness of flexspline and shaft",
         "K",
@@ -96,7 +92,6 @@ QUANTITIES: tuple[Quantity, ...] = (
         short_name="both in series",
     ),
     Quantity(
-        "wave_generator_peak_mises_MPa",
         "wave_generator_peak_mises_MPa",
         "MPa",
         "Peak von Mises stress, wave-generator ellipse",
@@ -106,14 +101,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "wave_generator_peak_half_seat_mises_MPa",
-        "wave_generator_peak_half_seat_mises_MPa",
         "MPa",
         "Peak von Mises stress, ellipse, seat half as wide as the ring",
         "σ_WG,half",
         digits=3,
     ),
     Quantity(
-        "torque_peak_mises_MPa",
         "torque_peak_mises_MPa",
         "MPa",
         "Peak von Mises stress, load torque",
@@ -123,7 +116,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "shaft_torque_peak_mises_MPa",
-        "shaft_torque_peak_mises_MPa",
         "MPa",
         "Peak von Mises stress of the shaft, load torque",
         "σ_T,shaft",
@@ -131,19 +123,16 @@ QUANTITIES: tuple[Quantity, ...] = (
         short_name="shaft, load torque",
     ),
     *(
-        Quantity(
-            f"{part}_{key}", f"{part}_{key}", unit, f"{name} of the {part}", f"{symbol}_{index}"
-        )
+        Quantity(f"{part}_{key}", unit, f"{name} of the {part}", f"{symbol}_{index}")
         for part, index in (("flexspline", "b"), ("shaft", "e"))
         for key, unit, name, symbol in (
             ("mass_g", "g", "Mass", "m"),
             ("length_mm", "mm", "Length", "L"),
         )
     ),
-    Quantity("ring_thickness_mm", "ring_thickness_mm", "mm", "Rim under the teeth", "t_rim"),
+    Quantity("ring_thickness_mm", "mm", "Rim under the teeth", "t_rim"),
     *(
         Quantity(
-            f"equivalent_ring_thickness{leaf}_mm",
             f"equivalent_ring_thickness{leaf}_mm",
             "mm",
             f"Plain ring as stiff as the toothed one, {name}",
@@ -157,7 +146,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "equivalent_ring_difference_pct",
-        "equivalent_ring_difference_pct",
         "%",
         "That plain ring (bending), thicker than the rim by",
         decimals=1,
@@ -165,7 +153,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     *(
         Quantity(
             f"backlash_arcsec.{leaf}",
-            f"backlash_{leaf}_arcsec",
             "arcsec",
             name,
             symbol,
@@ -182,14 +169,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "extended.total_arcsec",
-        "extended_total_arcsec",
         "arcsec",
         "Backlash with the extended model",
         "Δ_ext",
         decimals=1,
     ),
     Quantity(
-        "linear_torque_limit_Nm",
         "linear_torque_limit_Nm",
         "N·m",
         "Torque limit of the linear model, ellipse stress not counted",
@@ -198,17 +183,16 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "linear_torque_limit_reason",
-        "linear_torque_limit_reason",
         "",
         "Reason for that limit",
         kind="text",
     ),
     *GEAR_QUANTITIES,
-    Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
-    Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),
-    Quantity("solver.dofs", "solver_dofs", "", "Unknowns, finest mesh", kind="count"),
-    Quantity("solver.wall_s", "solver_wall_s", "s", "Elapsed time", decimals=1),
-    Quantity("solver.symmetry", "solver_symmetry", "", "Part solved", kind="text"),
+    Quantity("solver.model", "", "Model of K_b", kind="text"),
+    Quantity("solver.elements", "", "Elements, finest mesh", kind="count"),
+    Quantity("solver.dofs", "", "Unknowns, finest mesh", kind="count"),
+    Quantity("solver.wall_s", "s", "Elapsed time", decimals=1),
+    Quantity("solver.symmetry", "", "Part solved", kind="text"),
 )
 
 BY_KEY = {q.key: q for q in QUANTITIES}

@@ -22,7 +22,6 @@ class Quantity:
     Attributes
     ----------
     key : path in result.json, nested keys joined by dots.
-    column : the CSV header, flat, the unit still its suffix.
     unit : as printed, "" for none.
     name : long name.
     symbol : letter and index joined by "_", e.g. ``K_b``; "" for none.
@@ -37,7 +36,6 @@ class Quantity:
     """
 
     key: str
-    column: str
     unit: str
     name: str
     symbol: str = ""

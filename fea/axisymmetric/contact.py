@@ -47,10 +47,11 @@ def contact_stiffness(
 
     `supported` is K_b with the seat held, solved to a known accuracy: the ratio of the two K on one
     mesh is far more accurate than either, so K = supported × ratio, and the bounds add the ratio's
-    change from the mesh before to those of `supported`. They are estimates. Where they are wider than
-    `tolerance`, relative, and `supported` is not, more meshes tell how fast the ratio settles, and the
-    bounds go twice as far as it has yet to go. Where the second mesh fails or would end after the
-    deadline, the ratio is the first's, between that of the free seat and 1, and `shortfall` says why.
+    change from the mesh before to those of `supported`. They are estimates. Where half their
+    distance is more than `tolerance`·K, and that of `supported` is not, more meshes tell how fast the
+    ratio settles, and the bounds go twice as far as it has yet to go. Where the second mesh fails or
+    would end after the deadline, the ratio is the first's, between that of the free seat and 1, and
+    `shortfall` says why.
 
     Raises
     ------

@@ -33,7 +33,7 @@ LOBE_HALF_WIDTH = pi / 6
 TORQUE = NMM_PER_NM
 """Applied torque [N·mm]: 1 N·m."""
 TAIL_SHARE = 0.1
-"""Harmonics are added until the rest is below this share of the tolerance."""
+"""Harmonics are added until the rest is below this share of the bounds' wanted width."""
 MOST_HARMONICS = 200
 """Even ones. The end of a loop: the load falls as 1/n³, and cups and hats need about 20."""
 LOBE_BULK = 0.6
@@ -96,12 +96,12 @@ def lobe_stiffness(
     outline: Meridian,
     material: Elastic,
     supported: bool,
-    tolerance: float,
+    relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
 
-    `tolerance` is the wanted relative distance of the bounds. A given load stores too little
+    `relative_width` is the wanted (upper - lower)/K as a fraction. A given load stores too little
     energy in too few unknowns and harmonics, so K_h is an upper bound (but for the fillets, which
     quadratic edges follow closely, not exactly). The lower one is an estimate: twice the recovery
     error, scaled by what the last two meshes say of it, and the bound on missing harmonics. Where a
@@ -112,7 +112,7 @@ def lobe_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    *_, last = lobe_stiffnesses(outline, material, supported, tolerance, deadline)
+    *_, last = lobe_stiffnesses(outline, material, supported, relative_width, deadline)
     return last
 
 
@@ -120,11 +120,11 @@ def lobe_stiffnesses(
     outline: Meridian,
     material: Elastic,
     supported: bool,
-    tolerance: float,
+    relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[Stiffness]:
     """What each mesh gives; the last is `lobe_stiffness`. Errors as there."""
-    lobes = _RevolvedLobes(material, supported, tolerance)
+    lobes = _RevolvedLobes(material, supported, relative_width)
     for shortfall in refinements(lobes, triangulate(outline), deadline, MOST_TRIANGLES):
         yield lobes.stiffness(shortfall)
 
@@ -132,13 +132,13 @@ def lobe_stiffnesses(
 class _RevolvedLobes:
     """What the finest mesh gave, and how far off its K is."""
 
-    def __init__(self, material: Elastic, supported: bool, tolerance: float) -> None:
-        self._material, self._supported, self._tolerance = material, supported, tolerance
+    def __init__(self, material: Elastic, supported: bool, relative_width: float) -> None:
+        self._material, self._supported, self._relative_width = material, supported, relative_width
         self.estimate = ScaledEstimate(ERROR_SCALES[1], ERROR_SCALES)
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
-        self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._tolerance)
+        self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
         self.estimate.add(_level(model, self.found), self.found.estimate)
 
     @property
@@ -149,7 +149,7 @@ class _RevolvedLobes:
     @property
     def met(self) -> bool:
         doubt = 2 * self.estimate.relative + self.missing
-        return len(self.estimate.levels) > 1 and doubt < self._tolerance
+        return len(self.estimate.levels) > 1 and doubt < self._relative_width
 
     def stiffness(self, shortfall: Shortfall) -> Stiffness:
         """K between its bounds."""

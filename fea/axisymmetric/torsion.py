@@ -26,12 +26,12 @@ def torsional_stiffness(
     outline: Meridian,
     material: Elastic,
     driven: str,
-    tolerance: float,
+    relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
     """Torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
 
-    `driven` is "mesh" for a flexspline, "grip" for a shaft. `tolerance` is the wanted
+    `driven` is "mesh" for a flexspline, "grip" for a shaft. `relative_width` is the wanted
     (upper - lower)/K as a fraction (0.001 is 0.1 %); the mesh is refined where the two fields
     disagree until it is met, or until a mesh fails, is too large or would end after the deadline: then
     the bounds are those of the meshes before, and `shortfall` says why.
@@ -50,7 +50,7 @@ def torsional_stiffness(
     while (near := across_from_axis(mesh, boundary)).any():
         mesh = refined(mesh, near)
     per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
-    found = _Bounds(boundary, tolerance, per_G)
+    found = _Bounds(boundary, relative_width, per_G)
     shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
     return Stiffness(
         K_Nm_per_rad=(found.lower + found.upper) / 2 * per_G,
@@ -71,8 +71,8 @@ def torsional_stiffness(
 class _Bounds:
     """Of K/G [mm³], by the meshes so far, and those meshes' own figures."""
 
-    def __init__(self, boundary: Boundary, tolerance: float, per_G: float) -> None:
-        self._boundary, self._tolerance, self._per_G = boundary, tolerance, per_G
+    def __init__(self, boundary: Boundary, relative_width: float, per_G: float) -> None:
+        self._boundary, self._relative_width, self._per_G = boundary, relative_width, per_G
         self.lower, self.upper = 0.0, np.inf
         self.levels: list[MeshLevel] = []
 
@@ -85,7 +85,7 @@ class _Bounds:
 
     @property
     def met(self) -> bool:
-        return 2 * (self.upper - self.lower) / (self.upper + self.lower) < self._tolerance
+        return 2 * (self.upper - self.lower) / (self.upper + self.lower) < self._relative_width
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         return refined_twice(

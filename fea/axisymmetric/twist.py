@@ -34,14 +34,14 @@ class Twist:
     K_Nm_per_rad: float
 
 
-def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -> Twist:
-    """Refined until the recovery estimate of K's relative error is below `tolerance`.
+def twist(outline: Meridian, material: Elastic, driven: str, relative_error: float) -> Twist:
+    """Refined until the recovery estimate of K's relative error is below `relative_error`.
 
     Raises
     ------
     MeshingError, HarmonicError, ToleranceError
     """
-    found = _Twisted(material, driven, tolerance)
+    found = _Twisted(material, driven, relative_error)
     if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
         raise ToleranceError(f"the energy is off by {found.error:.2g}", why)
     r = found.model.space.places[:, 0]
@@ -53,8 +53,8 @@ def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -
 class _Twisted:
     """The finest mesh's solution, and its estimated relative error of the energy."""
 
-    def __init__(self, material: Elastic, driven: str, tolerance: float) -> None:
-        self._material, self._driven, self._tolerance = material, driven, tolerance
+    def __init__(self, material: Elastic, driven: str, relative_error: float) -> None:
+        self._material, self._driven, self._relative_error = material, driven, relative_error
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
@@ -70,7 +70,7 @@ class _Twisted:
 
     @property
     def met(self) -> bool:
-        return self.error < self._tolerance
+        return self.error < self._relative_error
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         return refined(mesh, bulk(self._found.error, LOBE_BULK))

@@ -21,14 +21,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Measurement, Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
@@ -63,7 +61,7 @@ class Diagnosis:
     """
 
     design: Design
-    measurement: Sweep | EndPoints | Specimens = field(repr=False)
+    measurement: Measurement = field(repr=False)
     prediction: Prediction
     outcome: DiagnosisOutcome
     model: ExtendedModel | None = None
@@ -108,7 +106,7 @@ class Diagnosis:
 
 def diagnose_measurement(
     design: Design,
-    measurement: Sweep | EndPoints | Specimens,
+    measurement: Measurement,
     K_b: float,
     K_e: float,
     K_error: float = 0.0,
@@ -132,16 +130,7 @@ def diagnose_measurement(
     """
     prediction = prediction_of(design, K_b, K_e, K_error)
     if chain is not None:
-        if not isinstance(measurement, Sweep):
-            raise MeasurementError(
-                measurement.path, None, "is not a torque sweep; only that is held against the gear"
-            )
-        largest = float(np.abs(measurement.history.torque_Nm).max())
-        if largest > 0:
-            from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
-            from flexspline.pipeline.diagnosis.whole_gear.scaled_bend import with_scaled_bend
-
-            prediction = with_scaled_bend(against_gear(prediction, chain, largest), measurement)
+        prediction = _along_gear_curve(prediction, chain, measurement)
     refuse_absurd(measurement, prediction, K_b, K_e, given)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
@@ -168,3 +157,18 @@ def diagnose_measurement(
         design, measurement, K_b, K_e, bench, full=context is not None
     )
     return Diagnosis(design, measurement, prediction, outcome, specimens=found)
+
+
+def _along_gear_curve(straight: Prediction, chain: Chain, measurement: Measurement) -> Prediction:
+    """The whole gear's curve in place of the straight line; errors as `diagnose_measurement`."""
+    if not isinstance(measurement, Sweep):
+        raise MeasurementError(
+            measurement.path, None, "is not a torque sweep; only that is held against the gear"
+        )
+    largest = measurement.history.largest_Nm
+    if largest == 0:
+        return straight
+    from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
+    from flexspline.pipeline.diagnosis.whole_gear.scaled_bend import with_scaled_bend
+
+    return with_scaled_bend(against_gear(straight, chain, largest), measurement)

@@ -18,7 +18,12 @@ from flexspline.pipeline.diagnosis.absurd_size import (
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
-from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
+from flexspline.pipeline.diagnosis.measurement.record import (
+    EndPoints,
+    Measurement,
+    Specimens,
+    Sweep,
+)
 from flexspline.pipeline.diagnosis.measurement.units import (
     ANGLE,
     STIFFNESS,
@@ -50,7 +55,7 @@ OPPOSITE_SHARE = -1 / 3
 
 
 def refuse_absurd(
-    measurement: Sweep | EndPoints | Specimens,
+    measurement: Measurement,
     prediction: Prediction,
     K_b: float,
     K_e: float,

@@ -29,10 +29,11 @@ from flexspline.pipeline.rim_case import RIM_CASES, figure_of
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve, stiffness_figures
 from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
 
-STUDY_TORSION_TOLERANCE = 2e-3
-STUDY_LOBE_TOLERANCE = 1e-2
+STUDY_TORSION_WIDTH = 2e-3
+STUDY_LOBE_WIDTH = 1e-2
 STUDY_STRESS_TOLERANCE = 1e-2
-"""Finer costs more than it tells among designs that differ by percents; bounds are in the row."""
+"""Of the bounds of K, over K; and the share by which a peak may still change. Finer costs more than it tells
+among designs that differ by percents; bounds are in the row."""
 
 
 @dataclass(frozen=True)
@@ -95,14 +96,14 @@ def figures_of(
     asked: dict[str, Callable[[], Stiffness | StressPeak]] = {}
     for case in RIM_CASES:
         if case in solves or figure_of(case) == in_sum:
-            asked[figure_of(case)] = partial(CASES[case].fast, flexspline, STUDY_LOBE_TOLERANCE)
+            asked[figure_of(case)] = partial(CASES[case].fast, flexspline, STUDY_LOBE_WIDTH)
     if "ellipse" in solves:
         asked["wave_generator_peak"] = lambda: ellipse_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
     if "torque" in solves:
         asked["torque_peak"] = lambda: torque_peak(flexspline, torque, STUDY_STRESS_TOLERANCE)
         asked["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STUDY_STRESS_TOLERANCE)
     if "torsion" in solves:
-        asked["K_b"] = lambda: stiffness(design, "flexspline", STUDY_TORSION_TOLERANCE)
+        asked["K_b"] = lambda: stiffness(design, "flexspline", STUDY_TORSION_WIDTH)
         asked["K_e"] = lambda: fast_K_e(design)
     found: dict[str, float] = {}
     missing: dict[str, str] = {}
@@ -134,7 +135,7 @@ def figures_of(
 
 def fast_K_e(design: Design) -> Stiffness:
     """Of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
-    return stiffness(design, "shaft", STUDY_TORSION_TOLERANCE)
+    return stiffness(design, "shaft", STUDY_TORSION_WIDTH)
 
 
 def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
@@ -150,7 +151,7 @@ def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
 
 
 def _gear(design: Design, K_e_Nm_per_rad: float) -> dict[str, float]:
-    curve = curve_of(design, fast_chain(design, K_e_Nm_per_rad, STUDY_TORSION_TOLERANCE))
+    curve = curve_of(design, fast_chain(design, K_e_Nm_per_rad, STUDY_TORSION_WIDTH))
     return {key: float(getattr(curve, key)) for key in GIVEN_BY["gear"]}
 
 

@@ -29,10 +29,10 @@ HELD_STEP = 1e-4
 WIDER_STEP = 10
 """Times HELD_STEP, where the outline cannot follow so small a step."""
 SOLVED_STEP = 0.04
-"""Of the dimension: K is known to half of K_TOLERANCE only, and its difference must stand above that."""
-K_TOLERANCE = 3e-4
-"""Half the bounds over K: with SOLVED_STEP the slope is then off by 1 to 2 % of K per dimension."""
-ENERGY_TOLERANCE = 1e-3
+"""Of the dimension: K is known to half of K_WIDTH only, and its difference must stand above that."""
+K_WIDTH = 3e-4
+"""Distance of the bounds over K: with SOLVED_STEP the slope is then off by 1 to 2 % of K per dimension."""
+FIELD_RELATIVE_ERROR = 1e-3
 """Of the field that is held; the slope is a ratio of energies on one mesh and more accurate than they are."""
 NARROWER = 0.25
 """Times the step, where a step cannot be built; TRIES of them end at a step of 0.06 %."""
@@ -56,14 +56,14 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
 
     for part in plain.parts:
         material = Elastic.of(part.material)
-        solved = twist(part.meridian, material, part.driven, ENERGY_TOLERANCE)
+        solved = twist(part.meridian, material, part.driven, FIELD_RELATIVE_ERROR)
 
         def K(v: dict[str, float], name: PartName = part.name) -> float:
-            return settled(torsion(changed(v, name), K_TOLERANCE)).K_Nm_per_rad
+            return settled(torsion(changed(v, name), K_WIDTH)).K_Nm_per_rad
 
         @cache
         def at_lobes(v: tuple[tuple[str, float], ...]) -> float:
-            return settled(lobes(changed(dict(v), "flexspline"), True, K_TOLERANCE)).K_Nm_per_rad
+            return settled(lobes(changed(dict(v), "flexspline"), True, K_WIDTH)).K_Nm_per_rad
 
         def K_lobes(v: dict[str, float]) -> float:
             return at_lobes(tuple(v.items()))
@@ -140,6 +140,6 @@ def _richardson(
         except FlexsplineError as fault:
             share, why = share * NARROWER, missing_because(fault)
             continue
-        noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
+        noise = 5 / 3 * K_WIDTH * here / (share * p)  # K's doubt on each, times the weights
         return (4 * close - wide) / 3, noise + abs(close - wide) / 3, MET
     return None, 0.0, why

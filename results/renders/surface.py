@@ -92,9 +92,14 @@ def surface(points: np.ndarray, facets: np.ndarray, curved: bool = True) -> pv.P
 
 def element_edges(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
     """The element edges of the facets as lines through their middle nodes."""
-    edges = np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
+    edges = _edges(facets)
     _, first = np.unique(edges[:, 1], return_index=True)  # a middle node belongs to one edge
     return lines(points, edges[first])
+
+
+def _edges(facets: np.ndarray) -> np.ndarray:
+    """Nodes (3m, 3) of the edges of facets (m, 6): corner, middle, corner."""
+    return np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
 
 
 def creases(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
@@ -104,7 +109,7 @@ def creases(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
 
 def crease_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
     """Nodes (k, 3) of those edges: corner, middle, corner."""
-    edges = np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
+    edges = _edges(facets)
     a, b, c = (points[facets[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), ABOVE_ZERO)[:, None]

@@ -19,6 +19,8 @@ ENTERS = {
     "lobes": "the torque at the two ends of the major axis",
 }
 """Where the torque enters, by `solver.load_case`."""
+LEAST_BEYOND_LIMIT = 5e-4
+"""Probability from which play beyond the involute model's end is said: 0.05 %."""
 OF_A_HAT = (
     " A hat’s flange touches only the outer part of it, and K_e is then too large: by 9 and 19 % on two "
     "shafts, against the same with their first 0.5 mm hollowed to the flange."
@@ -202,7 +204,7 @@ def _play(content: ReportContent) -> str:
             f" The {other} model gives {arcsec.text(abs(b.model_form_arcsec))} {arcsec.unit} "
             f"{sign}; that difference is error of the model, not part of the standard deviation."
         )
-    if b.play_beyond_limit > 5e-4:
+    if b.play_beyond_limit > LEAST_BEYOND_LIMIT:
         text += (
             f" With probability {100 * b.play_beyond_limit:.2g} % the play lies beyond that end."
         )

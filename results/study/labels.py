@@ -33,7 +33,7 @@ def entry(key: str) -> Quantity:
     stem, bound = key[:-3], _BOUND.get(key[-3:])
     if bound and stem in BY_KEY:
         q = BY_KEY[stem]
-        return Quantity(key, key, q.unit, f"{q.name}, {bound}", q.symbol, digits=q.digits)
+        return Quantity(key, q.unit, f"{q.name}, {bound}", q.symbol, digits=q.digits)
     return _design_key(key)
 
 
@@ -69,7 +69,7 @@ def _design_key(key: str) -> Quantity:
         name += f" of the {key_words(table.removeprefix('material.'))[0]}"
     elif table not in _UNSAID:
         name, unit = key_words(key)
-    return _Dimension(key, key, unit, name)
+    return _Dimension(key, unit, name)
 
 
 def long_name(key: str) -> str:

@@ -12,7 +12,7 @@ from flexspline.geometry.part_name import PART_NAMES
 from flexspline.geometry.percent import percent
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
-from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
+from flexspline.pipeline.study.evaluate import STUDY_LOBE_WIDTH, STUDY_TORSION_WIDTH
 from flexspline.pipeline.study.figures import stiffness_keys
 from flexspline.pipeline.study.holes import HOLE_EFFECT_DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
@@ -26,7 +26,7 @@ from flexspline.results.study.why import unfollowed
 PRELOAD = "preload_tooth_force_N"
 LATE_SHARE = 0.25
 """Of a search's designs, the last: what words call a quarter."""
-LEAST_MOVE = STUDY_LOBE_TOLERANCE / 2
+LEAST_MOVE = STUDY_LOBE_WIDTH / 2
 """Of the best figure: half of what bounds of K are wide in a study."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
@@ -35,8 +35,8 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
     """Sentences of the section "Scope and limits"; `of_best`: the warnings of the best designs."""
     said = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
-        f"is between bounds at most {100 * STUDY_TORSION_TOLERANCE:g} % apart, lobes "
-        f"{100 * STUDY_LOBE_TOLERANCE:g} %.",
+        f"is between bounds at most {100 * STUDY_TORSION_WIDTH:g} % apart, lobes "
+        f"{100 * STUDY_LOBE_WIDTH:g} %.",
         *_holes(result),
         _mass(result.study.design),
     ]
@@ -198,4 +198,5 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
 
 
 def _percent(value: float) -> str:
-    return f"{signed(value, 1)} %" if abs(value) >= 0.05 else "less than 0.05 %"
+    least = 0.05  # less is 0.0 in print
+    return f"{signed(value, 1)} %" if abs(value) >= least else f"less than {least:g} %"

@@ -41,14 +41,14 @@ class FitContext:
         return self.measured[1] if self.measured else self.prediction.gap_arcsec
 
     @cached_property
-    def torque_Nm(self) -> float:
+    def largest_Nm(self) -> float:
         """Largest torque."""
-        return float(np.abs(self.history.torque_Nm).max())
+        return self.history.largest_Nm
 
     @cached_property
     def scale_arcsec(self) -> float:
         """Predicted angle at the largest torque."""
-        return self.prediction.scale_arcsec(self.torque_Nm)
+        return self.prediction.scale_arcsec(self.largest_Nm)
 
     @cached_property
     def cycles(self) -> int:

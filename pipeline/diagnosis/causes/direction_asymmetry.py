@@ -42,7 +42,7 @@ class DirectionAsymmetry(Cause):
 
     def shapes(self, rig: FitContext) -> list[Shape]:
         return [
-            {"exponent": n, "rounding_Nm": r * rig.torque_Nm, "largest_torque_Nm": rig.torque_Nm}
+            {"exponent": n, "rounding_Nm": r * rig.largest_Nm, "largest_torque_Nm": rig.largest_Nm}
             for n, r in STARTS
         ]
 

@@ -94,7 +94,7 @@ class FrictionHysteresis(Cause):
     searched_apart = ({AHEAD: 30.0, "deadband_Nm": 0.0},)
 
     def shapes(self, rig: FitContext) -> list[Shape]:
-        largest = rig.torque_Nm
+        largest = rig.largest_Nm
         deadband = max(DEADBAND * largest, NOISE_LEFT * deadband_Nm(rig.history))
         found: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
@@ -230,7 +230,7 @@ class FrictionHysteresis(Cause):
 
     def _widths(self, elements: Sequence[Element], rig: FitContext) -> np.ndarray:
         """(LOOP_ROWS,) width of the closed loop from −T to T."""
-        largest = rig.torque_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
+        largest = rig.largest_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
 
         def angle(course: History) -> np.ndarray:
             teeth = self.at_teeth(elements, course)

@@ -11,6 +11,7 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.lost_turns import turned_unseen
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
 
@@ -103,30 +104,25 @@ def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:
     return list(pairwise(edges))
 
 
+@once
 def play(history: History, width_Nm: float) -> np.ndarray:
     """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone.
 
     It goes to turns that nobody has written, too (`lost_turns.py`).
     """
     width = np.array([max(width_Nm, LEAST_TORQUE_Nm)])
-    key = ("play", float(width[0]))
-    if key not in history.memo:
-        torque = turned_unseen(history)
-        history.memo[key] = torque - stops(history, torque, width, np.zeros(1))[:, 0]
-    return history.memo[key]
+    torque = turned_unseen(history)
+    return np.asarray(torque - stops(history, torque, width, np.zeros(1))[:, 0])
 
 
+@once
 def steadied(history: History, width_Nm: float) -> np.ndarray:
     """(n,) torque without reversals smaller than twice `width_Nm`: its running extremes.
 
     Not smoothed: corners stay where they are. An operator with a memory, driven by the raw reading,
     would follow the reading's noise and be fitted to it.
     """
-    key = ("steadied", float(width_Nm))
-    if key not in history.memo:
-        history.memo[key] = play(history, width_Nm) + width_Nm * rising(history, width_Nm)
-    found: np.ndarray = history.memo[key]
-    return found
+    return play(history, width_Nm) + width_Nm * rising(history, width_Nm)
 
 
 def within_cycle(history: History) -> np.ndarray:
@@ -161,7 +157,7 @@ def last_direction(step: np.ndarray) -> np.ndarray:
 
 def direction_of_loading(history: History) -> np.ndarray:
     """`rising`, by reversals larger than any noise that the torque may have."""
-    return rising(history, LARGEST_NOISE * float(np.abs(history.torque_Nm).max()))
+    return rising(history, LARGEST_NOISE * history.largest_Nm)
 
 
 def dahl(

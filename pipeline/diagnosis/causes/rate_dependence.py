@@ -57,7 +57,7 @@ class RateDependence(Cause):
         ramp = ramp_s(rig.history)
         if ramp <= 0:
             return []
-        rate = rig.torque_Nm / ramp
+        rate = rig.largest_Nm / ramp
         shortest = NOISE_LEFT * shortest_lag_s(rig.history)
         common = {
             "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest,

@@ -13,21 +13,20 @@ from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.robust import rms
 
 
+@once
 def _held_still(history: History) -> History:
     """The history with each hold's torque at its mean.
 
     The largest reading of a hold is its noise's, and a stuck bearing would remember it.
     """
-    key = ("held still", 0.0)
-    if key not in history.memo:
-        torque = history.torque_Nm.copy()
-        for hold in holds(history):
-            torque[hold] = torque[hold].mean()
-        history.memo[key] = torque
-    return turning_like(history, replace(history, torque_Nm=history.memo[key]))
+    torque = history.torque_Nm.copy()
+    for hold in holds(history):
+        torque[hold] = torque[hold].mean()
+    return turning_like(history, replace(history, torque_Nm=torque))
 
 
 ROWS_BESIDE_TURN, STRAIGHT_BESIDE_TURN = 5, 0.02

@@ -78,7 +78,7 @@ class StiffnessHardening(Cause):
         laws += [("rational", s) for s in SCALES]
         laws += [("cubic spring", c) for c in CUBIC_SHARES]
         found: list[Shape] = [
-            {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.torque_Nm}
+            {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.largest_Nm}
             for law, p in laws
             for held in HELD
             if not (law == "power" and held == AT_ZERO)  # infinitely soft at zero
@@ -86,7 +86,7 @@ class StiffnessHardening(Cause):
         found += [
             {
                 "law": LAWS["two knees"], "parameter": p, "second": q, "share": share, "held": held,
-                "largest_torque_Nm": rig.torque_Nm,
+                "largest_torque_Nm": rig.largest_Nm,
             }
             for p, q in TWO_KNEES
             for share in SHARES
@@ -113,7 +113,7 @@ class StiffnessHardening(Cause):
         return ((self._law(shape, x) - self._slope_held(shape) * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.prediction.compliance * rig.torque_Nm
+        return self.spread_share * rig.prediction.compliance * rig.largest_Nm
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Chord stiffness over 80–100 % of the largest torque / over 5–20 %."""
@@ -121,7 +121,7 @@ class StiffnessHardening(Cause):
         return high / low
 
     def _twist(self, elements: Sequence[Element], rig: FitContext, a: float, b: float) -> float:
-        torque = np.array([a, b]) * rig.torque_Nm
+        torque = np.array([a, b]) * rig.largest_Nm
         angle = rig.compliance * torque + self.angle_arcsec(elements, History.course(torque))
         return float(angle[1] - angle[0])
 

@@ -37,7 +37,7 @@ class TorqueOffset(Cause):
         return np.zeros((len(history), 1))
 
     def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.torque_Nm
+        return self.spread_share * rig.largest_Nm
 
     def corrected(self, elements: Sequence[Element], history: History) -> History:
         return history.shifted(sum(e.amplitudes[0] for e in elements))

@@ -65,7 +65,7 @@ def race(
     if not several:  # a zero per unit absorbs what shifts mid positions, and a curve needs torques
         terms = [t for t in terms if t.channel == "total"]
     else:
-        curve = (deviations.torque / rig.torque_Nm) ** 2
+        curve = (deviations.torque / rig.largest_Nm) ** 2
         terms.append(
             EndPointRegressor(
                 UNNAMED,

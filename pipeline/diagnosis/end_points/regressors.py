@@ -69,7 +69,7 @@ def rig_of(points: EndPoints, prediction: Prediction) -> FitContext:
 
 def end_point_regressors(points: EndPoints, rig: FitContext) -> list[EndPointRegressor]:
     """All hypotheses for a file's rows."""
-    torque, largest = points.torque_Nm, rig.torque_Nm
+    torque, largest = points.torque_Nm, rig.largest_Nm
     ones = np.ones_like(torque)
     clearance, series = known_causes()[CLEARANCE], known_causes()[SERIES]
     hardening, asymmetry = (

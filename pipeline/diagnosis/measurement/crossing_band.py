@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
@@ -14,5 +12,5 @@ off), and at least this share of the largest torque; docs/diagnosis.md, "Which r
 
 def crossing_band_Nm(history: History) -> float:
     """|T| below which the side of the gap is not known."""
-    largest = float(np.abs(history.torque_Nm).max())
+    largest = history.largest_Nm
     return max(BAND_SIGMAS * torque_noise_Nm(history), BAND_SHARE * largest)

@@ -121,17 +121,13 @@ def _lines(path: Path, found: FileText) -> _Lines:
             lines.append(row)
             numbers.append(number)
     _refuse_size(path, lines)
-    head = head_of(len(lines), _splitter(lines), tuple(SEPARATORS)) if lines else None
-    if comments and (head is None or head.score == 0):
+    head = head_of(len(lines), _splitter(lines), tuple(SEPARATORS))
+    if comments and head.score == 0:
         above = head_of(len(comments), _splitter([c for _, c in comments]), tuple(SEPARATORS))
         if above.score > 0:
             lines.insert(0, comments[above.at][1])
             numbers.insert(0, comments[above.at][0])
             head = Head(0, above.separator, above.cells, [], above.score)
-    if head is None:
-        raise MeasurementError(
-            path, None, "holds no header line; expected columns such as torque_Nm"
-        )
     return _Lines(found, head, lines, numbers)
 
 

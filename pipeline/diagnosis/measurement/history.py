@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -33,10 +35,10 @@ class History:
     readings: np.ndarray | None = None
     exact: bool = False
     number: np.ndarray | None = None
-    memo: dict[tuple[str, float], Any] = field(
+    memo: dict[tuple[Hashable, ...], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
-    """What operators have made of this history once and need again; never part of its value."""
+    """What was made of this history and is needed again (`once`); never part of its value."""
 
     @classmethod
     def course(cls, torque_Nm: np.ndarray) -> History:
@@ -87,14 +89,15 @@ class History:
         """(n,) on which side of the gap the teeth bear: −1, 0 or 1."""
         return np.sign(self.torque_Nm)
 
-    @property
+    @cached_property
+    def largest_Nm(self) -> float:
+        """Largest torque, of either sign."""
+        return float(np.abs(self.torque_Nm).max())
+
+    @cached_property
     def unit_slices(self) -> list[np.ndarray]:
         """Row indices of each unit, in order."""
-        key = ("unit_slices", 0.0)
-        if key not in self.memo:
-            self.memo[key] = [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]
-        found: list[np.ndarray] = self.memo[key]
-        return found
+        return [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]
 
     @property
     def unit_and_cycle(self) -> np.ndarray:

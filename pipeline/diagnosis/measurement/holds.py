@@ -7,6 +7,7 @@ import numpy as np
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.ramps import (
     CLEAR_SIGMAS,
     FEWEST_HOLD_ROWS,
@@ -31,20 +32,13 @@ AROUND_ROWS = 20
 """Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
 
 
+@once
 def holds(history: History) -> list[np.ndarray]:
     """Rows of each stretch where torque stands still between two moves, at least `FEWEST_HOLD_ROWS` rows."""
-    key = ("holds", 0.0)
-    if key not in history.memo:
-        history.memo[key] = _holds(history)
-    found: list[np.ndarray] = history.memo[key]
-    return found
-
-
-def _holds(history: History) -> list[np.ndarray]:
     fast = ramp_rate(history)
     if fast == 0:
         return []
-    span = HOLD_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
+    span = HOLD_RANGE_SHARE * history.largest_Nm
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST_HOLD_ROWS:

@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import (
     torque_noise_Nm,
     torque_noise_of_rows_Nm,
@@ -74,26 +75,23 @@ class KnownWay:
         return self.doubt_Nm.shape[1] == 1
 
 
+@once
 def programme_edges(history: History) -> list[np.ndarray]:
     """Of each unit: the first row, within it, of each way between two corners, and the last one's end.
 
     A corner beside a loss of rows lies in it: by the rows alone it is misplaced, and a way would reach over
     it. Losses side by side are a slower logger's rows.
     """
-    key = ("programme_edges", 0.0)
-    if key not in history.memo:
-        corners, found = corners_of(history), []
-        for unit, rows in enumerate(history.unit_slices):
-            t = history.time_or_rows(rows)
-            turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
-            lost = losses(t, history.torque_Nm[rows]) + 1
-            apart = np.diff(lost, prepend=-np.inf, append=np.inf) > 2 * AT_CORNER
-            for after in lost[apart[:-1] & apart[1:]]:
-                turned[np.abs(turned - after) <= AT_CORNER] = after
-            found.append(_stepped(np.unique([0, *turned, len(rows)]), history.torque_Nm[rows]))
-        history.memo[key] = found
-    edges: list[np.ndarray] = history.memo[key]
-    return edges
+    corners, found = corners_of(history), []
+    for unit, rows in enumerate(history.unit_slices):
+        t = history.time_or_rows(rows)
+        turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
+        lost = losses(t, history.torque_Nm[rows]) + 1
+        apart = np.diff(lost, prepend=-np.inf, append=np.inf) > 2 * AT_CORNER
+        for after in lost[apart[:-1] & apart[1:]]:
+            turned[np.abs(turned - after) <= AT_CORNER] = after
+        found.append(_stepped(np.unique([0, *turned, len(rows)]), history.torque_Nm[rows]))
+    return found
 
 
 def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
@@ -116,49 +114,39 @@ def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
     return at[kept]
 
 
+@once
 def still(history: History) -> list[np.ndarray]:
     """Rows of each hold between two corners of the programme: a sine's turn ends at no corner."""
-    key = ("still", 0.0)
-    if key not in history.memo:
-        way = np.zeros(len(history), int)
-        for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
-            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
-        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + CORNER_ROWS]
-    found: list[np.ndarray] = history.memo[key]
-    return found
+    way = np.zeros(len(history), int)
+    for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
+        way[rows] = np.repeat(np.diff(edges), np.diff(edges))
+    return [h for h in holds(history) if np.median(way[h]) <= len(h) + CORNER_ROWS]
 
 
+@once
 def known_ways(history: History) -> list[KnownWay]:
     """What lies between two corners, in parts of 3/4 of a cycle at the most, and holds of few rows.
 
     Where more ways bend than chance lets, as with a drive that rounds its corners, only holds are known.
     """
-    key = ("known_ways", 0.0)
-    if key not in history.memo:
-        found: list[KnownWay] = []
-        if torque_noise_Nm(history) > 0:
-            ways = list(_ways(history))
-            each = [_known(history, way, END_SIGMAS) for way in ways]
-            refused = sum(own is None for own in each)
-            up_to = bdtr(np.arange(len(each)), len(each), REFUSED_BY_CHANCE)
-            if refused <= (up_to < RECORDS).sum():  # chance refused these
-                each = [
-                    own or _known(history, way, BUMP_SIGMAS)
-                    for way, own in zip(ways, each, strict=True)
-                ]
-            elif refused > (1 - KNOWN_SHARE) * len(each):
-                each = []
-            found = [own for own in each if own is not None]
-            left = np.ones(len(history), bool)
-            for way in found:
-                left[way.rows] = False
-            holds_alone = (
-                _known(history, h, END_SIGMAS, most=0) for h in still(history) if left[h].all()
-            )
-            found += [way for way in holds_alone if way is not None]
-        history.memo[key] = found
-    known: list[KnownWay] = history.memo[key]
-    return known
+    if torque_noise_Nm(history) <= 0:
+        return []
+    ways = list(_ways(history))
+    each = [_known(history, way, END_SIGMAS) for way in ways]
+    refused = sum(own is None for own in each)
+    up_to = bdtr(np.arange(len(each)), len(each), REFUSED_BY_CHANCE)
+    if refused <= (up_to < RECORDS).sum():  # chance refused these
+        each = [
+            own or _known(history, way, BUMP_SIGMAS) for way, own in zip(ways, each, strict=True)
+        ]
+    elif refused > (1 - KNOWN_SHARE) * len(each):
+        each = []
+    found = [own for own in each if own is not None]
+    left = np.ones(len(history), bool)
+    for way in found:
+        left[way.rows] = False
+    holds_alone = (_known(history, h, END_SIGMAS, most=0) for h in still(history) if left[h].all())
+    return found + [way for way in holds_alone if way is not None]
 
 
 def _ways(history: History) -> Iterator[np.ndarray]:

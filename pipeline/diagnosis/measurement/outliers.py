@@ -27,7 +27,7 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
             out[a:b] = False
     rows = np.flatnonzero(out)
     rising = np.gradient(less_jitter(history).torque_Nm) > 0
-    near = SAME_PLACE * np.abs(history.torque_Nm).max()
+    near = SAME_PLACE * history.largest_Nm
     for i in rows:
         same = (
             (np.abs(history.torque_Nm[rows] - history.torque_Nm[i]) < near)

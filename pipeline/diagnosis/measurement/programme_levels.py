@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 
 ONE_LEVEL, WIDEST_LEVEL = 4.0, 8.0
@@ -13,20 +14,13 @@ ONE_LEVEL, WIDEST_LEVEL = 4.0, 8.0
 they are levels of their own, or a programme that never comes back."""
 
 
+@once
 def levelled_torque_Nm(history: History) -> np.ndarray:
     """(n,) torque less its noise; rests at one level have the mean of all of them.
 
     Each rest's own mean is off by its noise, which is in the angle too: a wave over the torque that passes
     through zero at every level would tell them apart by that alone.
     """
-    key = ("levelled", 0.0)
-    if key not in history.memo:
-        history.memo[key] = _levelled_torque_Nm(history)
-    found: np.ndarray = history.memo[key]
-    return found
-
-
-def _levelled_torque_Nm(history: History) -> np.ndarray:
     torque = less_jitter(history).torque_Nm.copy()
     rests = [way for way in known_ways(history) if way.held]
     if len(rests) < 2:

@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.lost_rows import far_apart
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 MOVING = 0.3
@@ -109,15 +110,9 @@ def cycle_rate(history: History, rows: np.ndarray) -> float:
     return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
 
 
+@once
 def ramp_rate(history: History) -> float:
     """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
-    key = ("ramp_rate", 0.0)
-    if key not in history.memo:
-        history.memo[key] = _ramp_rate(history)
-    return float(history.memo[key])
-
-
-def _ramp_rate(history: History) -> float:
     found = []
     for rows in history.unit_slices:
         if (rates := moving_rates(history, rows)) is None:
@@ -132,14 +127,14 @@ def _ramp_rate(history: History) -> float:
 def ramp_s(history: History) -> float:
     """Time of a ramp from zero to the largest torque, 0 without time or movement."""
     rate = ramp_rate(history)
-    return float(np.abs(history.torque_Nm).max()) / rate if rate > 0 else 0.0
+    return history.largest_Nm / rate if rate > 0 else 0.0
 
 
 def slowest_ramp_s(history: History) -> float:
     """Time of a ramp from zero to the largest torque at the slowest cycle's rate; 0 where no cycle says."""
     rates = [cycle_rate(history, rows) for rows in history.cycle_slices]
     slowest = min((r for r in rates if r > 0), default=0.0)
-    return float(np.abs(history.torque_Nm).max()) / slowest if slowest > 0 else 0.0
+    return history.largest_Nm / slowest if slowest > 0 else 0.0
 
 
 def shortest_lag_s(history: History) -> float:

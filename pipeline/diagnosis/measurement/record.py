@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.part_name import PartName
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -232,15 +234,20 @@ def _end_points(table: MeasuredTable) -> EndPoints:
     )  # fmt: skip
 
 
-PARTS = ("flexspline", "shaft", "series")
+PARTS_IN_ROW: Mapping[str, tuple[PartName, ...]] = {
+    "flexspline": ("flexspline",),
+    "shaft": ("shaft",),
+    "series": ("flexspline", "shaft"),
+}
+"""Parts of a specimen, by what its column `part` says."""
 
 
 def _specimens(table: MeasuredTable) -> Specimens:
     n = len(table)
     part = table.labels.get("part", ("series",) * n)
     for i, p in enumerate(part):
-        if p not in PARTS:
-            raise table.refuse(i, f'part = "{p[:40]}": must be one of {", ".join(PARTS)}')
+        if p not in PARTS_IN_ROW:
+            raise table.refuse(i, f'part = "{p[:40]}": must be one of {", ".join(PARTS_IN_ROW)}')
     for name in ("stiffness_Nm_per_rad", "stiffness_std_Nm_per_rad"):
         values = table.numbers.get(name, np.ones(n))
         low, high = STIFFNESS_Nm_per_rad

@@ -27,7 +27,7 @@ def resting(history: History) -> list[np.ndarray]:
     for rows in held:
         free[rows] = False
     torque = less_jitter(history).torque_Nm
-    span = SLOW_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
+    span = SLOW_RANGE_SHARE * history.largest_Nm
     pieces: list[np.ndarray] = []
     for rows in history.unit_slices:
         for first, end in runs(free[rows]):

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 INTERVAL_SIGMAS = 2.0
@@ -22,6 +23,7 @@ REACHES = (1, 2, 4, 8, 16, 32, 64)
 """Rows on either side of the means tried: the noise of the last is a tenth."""
 
 
+@once
 def temperature_without_noise(history: History) -> np.ndarray:
     """(n,) °C: of each row the mean of as many rows about it as tell nothing but noise.
 
@@ -34,14 +36,10 @@ def temperature_without_noise(history: History) -> np.ndarray:
     """
     if history.temperature_C is None:
         raise ValueError("a gap that follows temperature needs a temperature")
-    key = ("temperature_without_noise", 0.0)
-    if key not in history.memo:
-        found = np.array(history.temperature_C, float)
-        for rows in history.unit_slices:
-            found[rows] = _smoothed(found[rows], history.time_or_rows(rows))
-        history.memo[key] = found
-    quiet: np.ndarray = history.memo[key]
-    return quiet
+    found = np.array(history.temperature_C, float)
+    for rows in history.unit_slices:
+        found[rows] = _smoothed(found[rows], history.time_or_rows(rows))
+    return found
 
 
 def _rounding(readings: np.ndarray) -> float:

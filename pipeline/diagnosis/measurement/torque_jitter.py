@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
 from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import (
     TORQUE_NOISE,
     torque_noise_of_rows_Nm,
@@ -57,22 +58,23 @@ def jitter(history: History, width: int) -> np.ndarray:
     one, and at the record's ends, as many rows lie on one side. Of a hold between corners it is the torque
     less its mean.
     """
-    history = reading_of(history)
+    return _jitter_of_reading(reading_of(history), width)
+
+
+@once
+def _jitter_of_reading(history: History, width: int) -> np.ndarray:
     own = torque_noise_of_rows_Nm(history)
+    out = np.zeros(len(history))
     if not own.any():  # a calculated course
-        return np.zeros(len(history))
-    key = ("jitter", float(width))
-    if key not in history.memo:
-        out = np.zeros(len(history))
-        for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
-            t = history.time_or_rows(rows)
-            out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
-        for way in known_ways(history):
-            if way.held or width >= widest(history):
-                out[way.rows] = way.noise_Nm
-        # beyond its noise it is a corner that was not seen
-        history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * own, out, 0.0)
-    return history.memo[key]
+        return out
+    for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
+        t = history.time_or_rows(rows)
+        out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
+    for way in known_ways(history):
+        if way.held or width >= widest(history):
+            out[way.rows] = way.noise_Nm
+    # beyond its noise it is a corner that was not seen
+    return np.where(np.abs(out) < FAR_SIGMAS * own, out, 0.0)
 
 
 def widest(history: History) -> int:
@@ -80,42 +82,35 @@ def widest(history: History) -> int:
     return int(np.clip(len(history) / history.cycle_count / CYCLE_PART, USUAL_ROWS, WIDEST_ROWS))
 
 
+@once
 def less_jitter(history: History) -> History:
     """The history with its torque less the noise, as far as the rows around each one know it."""
-    key = ("less_jitter", 0.0)
-    if key not in history.memo:
-        torque = history.torque_Nm - jitter(history, widest(history))
-        cleared = turning_like(history, replace(history, torque_Nm=torque))
-        cleared.memo[TORQUE_NOISE] = np.full(len(history), _left_Nm(reading_of(history)))
-        history.memo[key] = cleared
-    found: History = history.memo[key]
-    return found
+    torque = history.torque_Nm - jitter(history, widest(history))
+    cleared = turning_like(history, replace(history, torque_Nm=torque))
+    cleared.memo[TORQUE_NOISE] = np.full(len(history), _left_Nm(reading_of(history)))
+    return cleared
 
 
+@once
 def by_known_ways(history: History) -> np.ndarray:
     """(n,) torque less the noise of ways that few numbers tell; elsewhere as it is read.
 
     For bent curves of torque: what a parabola leaves of the noise, alike in many rows, would look like one.
     """
-    key = ("by_known_ways", 0.0)
-    if key not in history.memo:
-        torque = history.torque_Nm.copy()
-        for way in known_ways(reading_of(history)):
-            torque[way.rows] -= way.noise_Nm
-        history.memo[key] = torque
-    return history.memo[key]
+    torque = history.torque_Nm.copy()
+    for way in known_ways(reading_of(history)):
+        torque[way.rows] -= way.noise_Nm
+    return torque
 
 
+@once
 def _left_Nm(history: History) -> float:
     """Noise [N·m] that a typical row has without its jitter: it is alike in neighbours, so none sees it."""
-    key = ("left", 0.0)
-    if key not in history.memo:
-        rows = 2 * widest(history) + 1
-        left = PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_of_rows_Nm(history)
-        for way in known_ways(history):
-            left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
-        history.memo[key] = rms(left)
-    return float(history.memo[key])
+    rows = 2 * widest(history) + 1
+    left = PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_of_rows_Nm(history)
+    for way in known_ways(history):
+        left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
+    return rms(left)
 
 
 def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: int) -> np.ndarray:

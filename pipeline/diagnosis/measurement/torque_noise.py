@@ -81,7 +81,7 @@ def _torque_noise_Nm(history: History) -> np.ndarray:
     units = [noise for noise in of(history.unit_slices) if noise is not None]
     if not units:
         return none
-    most = LARGEST_NOISE * float(np.abs(history.torque_Nm).max())
+    most = LARGEST_NOISE * history.largest_Nm
     scatter = [_about_levels(history.torque_Nm[rows[usual[rows]]]) for rows in history.unit_slices]
     about_levels = [noise for noise in scatter if noise is not None]
     rounding = _rounding_Nm(history)
@@ -124,6 +124,7 @@ def _rounding_Nm(history: History) -> float:
     """Deviation of what rounding does to a torque that is read in coarse steps, 0 where it is not.
 
     A programme of stairs has larger steps, and stays on each; ramps of equal steps change at their ends only.
+    `torque_step_Nm` asks less: its steps are no noise where torque stays on each for many rows.
     """
     levels = np.unique(history.torque_Nm)
     if len(levels) < FEWEST_LEVELS or history.readings is not None:

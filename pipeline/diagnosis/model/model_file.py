@@ -92,11 +92,39 @@ def read_model_file(path: Path) -> ModelFile:
     ModelFileError : unreadable, no TOML, unknown or missing keys, wrong types, unknown causes or
         shapes, an amplitude that its cause forbids.
     """
-    data = _toml(path)
 
     def refuse(reason: str) -> ModelFileError:
         return ModelFileError(path, reason)
 
+    data = _toml(path)
+    _check_keys(data, refuse)
+    units = {u["name"]: u for u in data["unit"]}
+    if len(units) != len(data["unit"]):
+        raise refuse("a unit's name appears twice")
+    elements, alternatives = _causes(data, refuse)
+    own = {
+        name: (
+            float(u.get("own_compliance_arcsec_per_Nm", 0.0)),
+            float(u.get("own_gap_arcsec", 0.0)),
+        )
+        for name, u in units.items()
+        if set(u) & set(OWN)
+    }
+    model = ExtendedModel(
+        float(data["calibrated"]["compliance_arcsec_per_Nm"]),
+        float(data["calibrated"]["gap_arcsec"]),
+        {name: float(u["zero_arcsec"]) for name, u in units.items()},
+        elements,
+        own,
+        _bend(data["bend"], refuse) if "bend" in data else None,
+    )
+    provenance = _provenance(data["provenance"], units, refuse)
+    doubt = read_doubt(data["doubt"], model, refuse) if "doubt" in data else None
+    return ModelFile(path, model, provenance, doubt, alternatives)
+
+
+def _check_keys(data: Mapping[str, Any], refuse: Refuse) -> None:
+    """Refuse what is no extended model of this format, and missing or unknown keys."""
     if "flexspline" in data:
         raise refuse("no extended model: a design file; `diagnose` writes extended_model.toml")
     check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"no extended model: {r}"))
@@ -111,9 +139,12 @@ def read_model_file(path: Path) -> ModelFile:
         raise refuse("calibrated.compliance_arcsec_per_Nm must be above 0")
     for table in tables(data["unit"], "unit", refuse):
         check(table, UNIT, OWN | ORIGIN, "[[unit]]", refuse)
-    units = {u["name"]: u for u in data["unit"]}
-    if len(units) != len(data["unit"]):
-        raise refuse("a unit's name appears twice")
+
+
+def _causes(
+    data: Mapping[str, Any], refuse: Refuse
+) -> tuple[dict[str, tuple[Element, ...]], dict[str, tuple[str, ...]]]:
+    """Each cause's elements and rivals, by its id."""
     elements: dict[str, tuple[Element, ...]] = {}
     alternatives: dict[str, tuple[str, ...]] = {}
     for table in tables(data.get("cause", []), "cause", refuse):
@@ -123,31 +154,17 @@ def read_model_file(path: Path) -> ModelFile:
         elements[table["id"]] = _elements(table, refuse)
         if rivals := table.get("alternatives"):
             alternatives[table["id"]] = _texts(rivals, "alternatives in [[cause]]", refuse)
-    own = {
-        name: (
-            float(u.get("own_compliance_arcsec_per_Nm", 0.0)),
-            float(u.get("own_gap_arcsec", 0.0)),
-        )
-        for name, u in units.items()
-        if set(u) & set(OWN)
-    }
-    model = ExtendedModel(
-        float(calibrated["compliance_arcsec_per_Nm"]),
-        float(calibrated["gap_arcsec"]),
-        {name: float(u["zero_arcsec"]) for name, u in units.items()},
-        elements,
-        own,
-        _bend(data["bend"], refuse) if "bend" in data else None,
-    )
+    return elements, alternatives
+
+
+def _provenance(
+    origin: Mapping[str, Any], units: Mapping[str, Mapping[str, Any]], refuse: Refuse
+) -> Provenance:
     given = {key: origin[key] for key in PROVENANCE}
     cycle, time = ({name: float(u[key]) for name, u in units.items() if key in u} for key in ORIGIN)
     digests = origin.get("design_digests", {})
     _texts(digests.values(), "design_digests in [provenance]", refuse)
-    provenance = Provenance(
-        **given, first_cycle=cycle, first_time_s=time, design_digests=dict(digests)
-    )
-    doubt = read_doubt(data["doubt"], model, refuse) if "doubt" in data else None
-    return ModelFile(path, model, provenance, doubt, alternatives)
+    return Provenance(**given, first_cycle=cycle, first_time_s=time, design_digests=dict(digests))
 
 
 def _texts(values: Iterable[object], where: str, refuse: Refuse) -> tuple[str, ...]:

@@ -6,7 +6,6 @@ instead of FE, from them, scaled by the ratio of the hole-free axisymmetric mode
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 
 from flexspline.fea.shortfall import settled
@@ -22,18 +21,12 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.revolved import lobes, torsion
 
-BENCH_TORSION_TOLERANCE = 1e-3
-"""Relative, of the hole-free model's K: a step of `sensitivity.SMALLEST_STEP` changes K by more than ten
-times as much."""
-BENCH_LOBE_TOLERANCE = 5e-3
-"""Relative, of the lobes' K, whose harmonics cost more: of the example cup (K_b 31 377 uniform, 26 832 at the
+BENCH_TORSION_WIDTH = 1e-3
+"""Of the bounds of the hole-free model's K, over K: a step of `sensitivity.SMALLEST_STEP` changes K by more
+than ten times as much."""
+BENCH_LOBE_WIDTH = 5e-3
+"""The same at the lobes, whose harmonics cost more: of the example cup (K_b 31 377 uniform, 26 832 at the
 lobes) it is 3 % of the way between them, a quarter of the narrower prior in `parameters.ZONES`."""
-PARTS: Mapping[str, tuple[PartName, ...]] = {
-    "flexspline": ("flexspline",),
-    "shaft": ("shaft",),
-    "series": ("flexspline", "shaft"),
-}
-"""Parts in a row, by what its column `part` says."""
 
 
 @dataclass(frozen=True)
@@ -62,12 +55,14 @@ class Bench:
 
     def as_in_sum(self, design: Design, part: PartName) -> float:
         """`plain` for the load case of the sum, fine enough for slopes."""
-        return self.plain(
-            design, part, enters_at_lobes(design, part), tolerance=BENCH_TORSION_TOLERANCE
-        )
+        return self.plain(design, part, enters_at_lobes(design, part), BENCH_TORSION_WIDTH)
 
     def plain(
-        self, design: Design, part: PartName, lobed: bool = False, tolerance: float | None = None
+        self,
+        design: Design,
+        part: PartName,
+        lobed: bool = False,
+        relative_width: float | None = None,
     ) -> float:
         """Compliance [rad per N·m] of the part without holes."""
         solid = replace(self.context, design=design).part(part).context.design
@@ -75,14 +70,14 @@ class Bench:
         material = Elastic.of(own.material)
         # where nothing is drilled, a circle and a diameter of holes may still be stated
         shape = own.shape.model_copy(update=NO_HOLES).model_dump(mode="json")
-        tolerance = tolerance or (BENCH_LOBE_TOLERANCE if lobed else BENCH_TORSION_TOLERANCE)
+        width = relative_width or (BENCH_LOBE_WIDTH if lobed else BENCH_TORSION_WIDTH)
 
         def make() -> float:
-            found = lobes(own, True, tolerance) if lobed else torsion(own, tolerance)
+            found = lobes(own, True, width) if lobed else torsion(own, width)
             return 1 / settled(found).K_Nm_per_rad
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
-                  "tolerance": tolerance}  # fmt: skip
+                  "relative_width": width}  # fmt: skip
         return float(self.context.cache.get("specimen", inputs, make)[0])
 
 

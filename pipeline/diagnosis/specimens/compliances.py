@@ -12,7 +12,8 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PartName
-from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
+from flexspline.pipeline.diagnosis.measurement.record import PARTS_IN_ROW
+from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.sensitivity import (
     Sensitivity,
     drawn_through,
@@ -77,13 +78,13 @@ def compliances(
         return known[key]
 
     n = len(designs)
-    own = {p: np.zeros(n) for p in PARTS["series"]}
+    own = {p: np.zeros(n) for p in PARTS_IN_ROW["series"]}
     zone = np.zeros(n)
     base = 1.0 if bench.context.design.solver.sum_at_lobes else 0.0
     for i, (design, part) in enumerate(zip(designs, parts, strict=True)):
         if n > 1:
             bench.context.progress.note(f"stiffness of specimen {i + 1} of {n}")
-        for p in PARTS[part]:
+        for p in PARTS_IN_ROW[part]:
             own[p][i] = once("own", design, p)
         if zones and own["flexspline"][i]:
             uniform, lobes = (

@@ -21,11 +21,11 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.left_out import LeftOut
-from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.diagnosis.measurement.record import PARTS_IN_ROW, Specimens
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Doing, Gain, NextMeasurement
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.shortage import FewSpecimens
-from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_designs
+from flexspline.pipeline.diagnosis.specimens.bench import Bench, row_designs
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit, SpecimenData, fit
@@ -138,7 +138,7 @@ def _parts(
     choices = [*owners, "series"] if len(owners) == 1 else ["series", "flexspline", "shaft"]
     off = {}
     for choice in choices:
-        C = [sum(bench.compliance(d, p) for p in PARTS[choice]) for d in designs]
+        C = [sum(bench.compliance(d, p) for p in PARTS_IN_ROW[choice]) for d in designs]
         off[choice] = float(abs(np.median(np.log(specimens.stiffness_Nm_per_rad * np.array(C)))))
     part = choices[0] if len(owners) == 1 else min(off, key=lambda c: off[c])
     if part != "series" and off[part] > FAR_OFF_LOG_K and off["series"] < off[part] / 2:

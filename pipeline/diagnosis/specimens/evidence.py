@@ -23,6 +23,9 @@ USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 GAUSS_NEWTON_STEPS = 8
 """Of Gauss-Newton at most: of 333 fits of the example and two made-up sets 303 are done after five, 3 not
 after eight."""
+NOISE_CHOSEN_IN, SETTLED_SPREADS = (1, 3), 1e-3
+"""Rounds, from 0, in which the noise is chosen by what is left; and the step, in prior standard deviations,
+below which a later round is the last."""
 MOST_STEP = 3.0
 """Prior standard deviations that a round may move a parameter: beyond, the linear model is not trusted."""
 DIFFERENCE_STEP = 1e-4
@@ -125,13 +128,13 @@ def fit(data: SpecimenData, terms: Sequence[SpecimenParameter]) -> LaplaceFit:
             # per spread
             slope[:, j] = (log_compliance(data.fe, terms, moved) - model) / DIFFERENCE_STEP
         target = data.log_compliance - model + slope @ ((at - centre) / spread)
-        if round_ in (1, 3):
+        if round_ in NOISE_CHOSEN_IN:
             scores = np.array([p + _evidence(target, slope, s) for p, s in noises])
             noise = noises[int(np.argmax(scores))][1]
         inner = slope.T @ (slope / noise[:, None] ** 2) + np.eye(len(at))
         new = centre + spread * np.linalg.solve(inner, slope.T @ (target / noise**2))
         new = np.clip(new, at - MOST_STEP * spread, at + MOST_STEP * spread)
-        done = np.abs((new - at) / spread).max() < 1e-3 and round_ > 3
+        done = np.abs((new - at) / spread).max() < SETTLED_SPREADS and round_ > NOISE_CHOSEN_IN[-1]
         at = new
         model = log_compliance(data.fe, terms, at)
         if done:

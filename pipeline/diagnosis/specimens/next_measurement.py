@@ -9,8 +9,9 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.measurement.record import PARTS_IN_ROW
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
-from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
+from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
@@ -52,7 +53,7 @@ def _separating(
     fits = (explanation.chosen, *explanation.rivals)
     bench.context.progress.note("the specimen that would tell the rivals apart")
     found: list[tuple[float, str, float, float]] = []
-    for name in PARTS[part]:
+    for name in PARTS_IN_ROW[part]:
         for key, nominal in lengths(design.part(name)).items():
             for factor in () if key.endswith(ANOTHER_GEAR) else DIMENSION_FACTORS:
                 value = round(nominal * factor, 3)

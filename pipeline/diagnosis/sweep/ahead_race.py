@@ -154,7 +154,7 @@ def _raced_with(
             shifted = 0.0
         moved = abs(found.element.amplitudes[0] - element.amplitudes[0])
         bent = abs(float(np.log(found.element.shape[AHEAD] / element.shape[AHEAD])))
-        settled = AHEAD_SETTLED_SHARE * plain.rig.torque_Nm
+        settled = AHEAD_SETTLED_SHARE * plain.rig.largest_Nm
         if moved < settled and bent < SETTLED_LOG and abs(shifted - offset) < settled:
             break
         element, offset = found.element, shifted
@@ -195,9 +195,8 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     friction = prepared.ahead.amplitudes[0]
     way = direction_of_loading(true_history(prepared.sweep, prepared.offset_Nm))
     good = ~prepared.outlier & (way != 0)
-    gap = fit.gap_arcsec()
-    left = fit.residual() + history.sign * gap / 2
-    along, height, gap = (way * history.torque_Nm + friction)[good], (way * left)[good], gap[good]
+    along, height = way * history.torque_Nm + friction, way * fit.left_but_for_gap()
+    along, height, gap = along[good], height[good], fit.gap_arcsec()[good]
     noise = prepared.noise.std_arcsec
     found = crossing(along, height, gap, noise, torque_noise_Nm(history))
     if found is None:

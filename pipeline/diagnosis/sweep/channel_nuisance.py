@@ -58,7 +58,7 @@ def changing_stiffness(rig: FitContext) -> Made:
     t = _passed(rig)
     if t is None:
         return
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     for degree in DEGREES:
         powers = np.column_stack([t**k for k in range(1, degree + 1)])
         yield "time_s", UnnamedForm("changing_stiffness"), torque[:, None] * powers
@@ -89,7 +89,7 @@ def over_cycle(rig: FitContext) -> Made:
     if rig.cycles < 2:
         return
     own = levels(rig.history.cycle.astype(float))
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     yield "cycle", UnnamedForm("own_zero"), own
     yield "cycle", UnnamedForm("own_stiffness"), own * torque[:, None]
     ramp = rig.history.cycle / (rig.cycles - 1)
@@ -111,7 +111,7 @@ def over_temperature(rig: FitContext) -> Made:
     temperature = rig.history.temperature_C
     if temperature is None or np.ptp(temperature_without_noise(rig.history)) < STEADY_K:
         return
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     warm = to_one(temperature - REFERENCE_C)
     centred = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
     yield "temperature_C", UnnamedForm("changing_zero"), warm[:, None]
@@ -146,7 +146,7 @@ def over_position(rig: FitContext) -> Made:
     angle = rig.history.input_angle_deg
     if angle is None or np.ptp(angle) == 0:
         return
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     own = levels(np.mod(angle, 360.0))
     if _telling(rig):
         yield "input_angle_deg", UnnamedForm("own_zero"), own
@@ -178,7 +178,7 @@ def over_unit(rig: FitContext) -> Made:
     units = rig.history.unit_slices
     if len(units) < 2:
         return
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     for u, rows in enumerate(units):
         own = np.zeros(len(torque))
         own[rows] = 1.0

@@ -85,7 +85,7 @@ class CrossedRecord:
     @cached_property
     def width_Nm(self) -> float:
         """Noise of the torque, by which a row may lie on the other side."""
-        least = LEAST_WIDTH * float(np.abs(self.history.torque_Nm).max())
+        least = LEAST_WIDTH * self.history.largest_Nm
         return max(torque_noise_Nm(self.history), least)
 
     def best(self, tried: Iterable[Tried]) -> CrossingFit:

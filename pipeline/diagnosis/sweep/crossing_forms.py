@@ -52,14 +52,14 @@ class Tried:
 
 def at_a_place(history: History) -> list[Tried]:
     """Crossed at one torque in both senses: a shifted reading, or none."""
-    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * _largest(history)
+    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * history.largest_Nm
     return [Tried("offset", p, _sharp(history.torque_Nm - p)) for p in places.tolist()]
 
 
 def softly(history: History) -> list[Tried]:
     """Crossed at zero, by teeth that take up their load one after another: alike in both senses."""
     torque = history.torque_Nm
-    widths = np.geomspace(*SOFT_ENDS, SOFT_STEPS) * _largest(history)
+    widths = np.geomspace(*SOFT_ENDS, SOFT_STEPS) * history.largest_Nm
     return [Tried("soft", width, _soft(torque, width)) for width in widths.tolist()]
 
 
@@ -69,7 +69,7 @@ def behind_friction(
     """Crossed where friction ahead of the teeth lets the torque pass, which the twist follows; beside a
     shifted reading."""
     if frictions_Nm is None:
-        frictions_Nm = np.linspace(0, LARGEST_FRICTION, FRICTIONS + 1)[1:] * _largest(history)
+        frictions_Nm = np.linspace(0, LARGEST_FRICTION, FRICTIONS + 1)[1:] * history.largest_Nm
     torque = steadied(history, deadband_Nm(history))
     carried = stops(history, torque, frictions_Nm, np.zeros(len(frictions_Nm)))
     at_teeth = history.torque_Nm[:, None] - carried
@@ -106,10 +106,6 @@ def late(history: History, kind: str, time_s: float) -> Tried:
         true = torque_read_at(history, time_s)
         return Tried(kind, time_s, _sharp(true), true)
     return Tried(kind, time_s, _sharp(torque), lagging)
-
-
-def _largest(history: History) -> float:
-    return float(np.abs(history.torque_Nm).max())
 
 
 def _sharp(torque_Nm: np.ndarray) -> Form:

@@ -5,6 +5,7 @@ It crosses the gap late both ways, and would pass for hardening and a negative g
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     nats_over,
     step_misfit,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, on_both_sides
 
 LARGEST_FRICTION = 0.45
 """Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
@@ -42,6 +43,61 @@ class AheadGuess:
     offset_Nm: float = 0.0
 
 
+@dataclass(frozen=True)
+class _AheadSearch:
+    """Frictions and shifted readings that are tried on a record.
+
+    Attributes
+    ----------
+    steady_Nm : (n,) torque, `steadied`.
+    frictions_Nm, carried_Nm : (COARSE_PLACES,) tried at first, and the torque (n, COARSE_PLACES) of each.
+    offsets_Nm : (OFFSETS,) of the reading.
+    misfit : what the angle's fit leaves where the gap is crossed so much torque [N·m] later.
+    """
+
+    history: History
+    steady_Nm: np.ndarray
+    frictions_Nm: np.ndarray
+    carried_Nm: np.ndarray
+    offsets_Nm: np.ndarray
+    misfit: Callable[[np.ndarray | float], float]
+
+    def friction(self, offset_Nm: float = 0.0) -> tuple[int, float]:
+        """The best friction of the first ones beside a shifted reading, and its misfit."""
+        found = [self.misfit(carried + offset_Nm) for carried in self.carried_Nm.T]
+        return _least(found)
+
+    def offset(self, carried_Nm: np.ndarray | float) -> tuple[int, float]:
+        """The best shifted reading beside a friction, and its misfit."""
+        found = [self.misfit(carried_Nm + offset) for offset in self.offsets_Nm]
+        return _least(found)
+
+    def both(self, friction: int, offset: int) -> tuple[int, int, float]:
+        """The best of each beside the best of the other, begun with either, and their misfit."""
+        beside_friction = self.offset(self.carried_Nm[:, friction])[0]
+        beside_offset = self.friction(self.offsets_Nm[offset])[0]
+        first, of_first = self.friction(self.offsets_Nm[beside_friction])
+        second, of_second = self.offset(self.carried_Nm[:, beside_offset])
+        if of_second < of_first:
+            return beside_offset, second, of_second
+        return first, beside_friction, of_first
+
+    def finer(self, friction: int, misfit: float, offset_Nm: float = 0.0) -> tuple[float, float]:
+        """The friction [N·m] near one of the first ones, and its misfit."""
+        first = self.frictions_Nm[friction]
+        fine = first + self.frictions_Nm[0] * np.linspace(-1, 1, FINE_PLACES + 2)[1:-1]
+        carried = stops(self.history, self.steady_Nm, fine, np.zeros(FINE_PLACES))
+        again = [self.misfit(own + offset_Nm) for own in carried.T]
+        k, least = _least(again)
+        return (fine[k], least) if least <= misfit else (first, misfit)
+
+
+def _least(misfits: list[float]) -> tuple[int, float]:
+    """Which is the least, and how much."""
+    k = int(np.argmin(misfits))
+    return k, misfits[k]
+
+
 def first_ahead(
     history: History, angle_arcsec: np.ndarray, gap_arcsec: float, band_Nm: float
 ) -> AheadGuess | None:
@@ -52,60 +108,36 @@ def first_ahead(
     beyond a play operator changes sign; the play's width is the guess, if it is clearly better than none, and
     than a shifted torque reading; or both, if they are clearly better than either.
     """
-    largest = float(np.abs(history.torque_Nm).max())
-    if not both_ways(history.torque_Nm):
+    if not on_both_sides(history.torque_Nm):
         return None
-    torque = steadied(history, deadband_Nm(history))
-    coarse = np.linspace(0, LARGEST_FRICTION, COARSE_PLACES + 1)[1:] * largest
-    carried = stops(history, torque, coarse, np.zeros(COARSE_PLACES))
-    smooth = looped_functions(history)
+    smooth, rows = looped_functions(history), len(history)
 
-    def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
-        beyond = history.torque_Nm - carried_Nm
+    def misfit(later_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
+        beyond = history.torque_Nm - later_Nm
         return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, least)
 
-    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSETS) * largest
-    table = [misfit(carried[:, k]) for k in range(COARSE_PLACES)]
-    best = int(np.argmin(table))
-    if not np.isfinite(table[best]) or table[best] <= 0:
+    steady = steadied(history, deadband_Nm(history))
+    coarse = np.linspace(0, LARGEST_FRICTION, COARSE_PLACES + 1)[1:] * history.largest_Nm
+    search = _AheadSearch(
+        history,
+        steady,
+        coarse,
+        stops(history, steady, coarse, np.zeros(COARSE_PLACES)),
+        np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSETS) * history.largest_Nm,
+        misfit,
+    )
+    best, least = search.friction()
+    if not np.isfinite(least) or least <= 0:
         return None
-    rows = len(history)
-
-    def finer(best: int, coarsest: float, offset: float) -> tuple[float, float]:
-        """The friction near one of the coarse places, and its misfit."""
-        fine = coarse[best] + coarse[0] * np.linspace(-1, 1, FINE_PLACES + 2)[1:-1]
-        near = stops(history, torque, fine, np.zeros(FINE_PLACES))
-        again = [misfit(near[:, k] + offset) for k in range(FINE_PLACES)]
-        k = int(np.argmin(again))
-        return (fine[k], again[k]) if again[k] <= coarsest else (coarse[best], coarsest)
-
-    friction, least = finer(best, table[best], 0.0)
+    friction, least = search.finer(best, least)
     nats = nats_over(misfit(0.0, -np.inf), least, rows)
     if nats < BOTH_NATS:
         return None
-
-    def placed(carried_Nm: np.ndarray | float) -> tuple[int, float]:
-        """The best place of a shifted reading, and its misfit."""
-        found = [misfit(carried_Nm + p) for p in places]
-        return int(np.argmin(found)), min(found)
-
-    def rubbed(place: int) -> tuple[int, float]:
-        """The best friction beside a shifted reading, and its misfit."""
-        found = [misfit(carried[:, k] + places[place]) for k in range(COARSE_PLACES)]
-        return int(np.argmin(found)), min(found)
-
-    shifted, of_offset = placed(0.0)
-    # both at once: the best of the one for the best of the other, begun with either
-    beside_friction = placed(carried[:, best])[0]
-    beside_offset = rubbed(shifted)[0]
-    pairs = [
-        (*rubbed(beside_friction), beside_friction),
-        (beside_offset, *placed(carried[:, beside_offset])[::-1]),
-    ]
-    k, joint, place = min(pairs, key=lambda pair: pair[1])
+    shifted, of_offset = search.offset(0.0)
+    beside, place, joint = search.both(best, shifted)
     if nats_over(min(least, of_offset), joint, rows) >= FIRST_NATS:
-        offset = float(places[place])
-        friction, joint = finer(k, joint, offset)
+        offset = float(search.offsets_Nm[place])
+        friction, joint = search.finer(beside, joint, offset)
         nats = nats_over(min(least, of_offset), joint, rows)
         return AheadGuess(float(friction), nats, offset)
     over_offset = nats_over(of_offset, least, rows)

@@ -18,7 +18,11 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     stiffness_of_positions,
     zeros_of_cycles,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, SEEN_RATIO, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import (
+    OFFSET_REACH,
+    SEEN_RATIO,
+    on_both_sides,
+)
 
 FIRST_STEPS = 81
 """Places tried: odd, so that 0 is one; 0.9 % of the largest torque apart, a quarter of the band (3.5 %)."""
@@ -35,8 +39,8 @@ def first_offset(
     step of free height; the step's place is the guess, if it is clearly better there than at zero, and if the
     functions leave less than the step: what they miss of a loop without a step is better at some place too.
     """
-    largest = float(np.abs(history.torque_Nm).max())
-    if not both_ways(history.torque_Nm):
+    largest = history.largest_Nm
+    if not on_both_sides(history.torque_Nm):
         return 0.0
     x = history.torque_Nm / largest
     direction = direction_of_loading(history)

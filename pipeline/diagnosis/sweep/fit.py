@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
@@ -58,12 +58,15 @@ class SweepFit:
         posterior = self.posterior if mean is None else replace(self.posterior, mean=mean)
         ahead = self.evidence.columns.ahead
         found: dict[str, tuple[Element, ...]] = {FRICTION: (ahead.element,)} if ahead else {}
-        for i, amplitudes in zip(posterior.terms, posterior.amplitudes(self.evidence), strict=True):
-            term = self.evidence.terms[i]
+        for term, amplitudes in self._amplitudes(posterior):
             if term.cause is not None:
                 element = Element(term.shape, tuple(float(a) for a in amplitudes))
                 found[term.cause.id] = (*found.get(term.cause.id, ()), element)
         return found
+
+    def _amplitudes(self, posterior: Posterior) -> Iterable[tuple[Regressor, np.ndarray]]:
+        """Each term of the set with its amplitudes by a posterior of it."""
+        return zip(self.regressors, posterior.amplitudes(self.evidence), strict=True)
 
     @property
     def calibration(self) -> Calibration:
@@ -95,7 +98,7 @@ class SweepFit:
         k = self.units
         change = mean[k : k + 2].copy()
         if k > 1:
-            change += mean[k + 2 : k + 2 + 2 * k].reshape(k, 2).mean(axis=0)
+            change += self.units_own(mean).mean(axis=0)
         for cause_id, elements in self.elements(mean).items():
             if cause_id in LINEAR:
                 change[LINEAR[cause_id]] += sum(e.amplitudes[0] for e in elements)
@@ -103,6 +106,11 @@ class SweepFit:
         return replace(
             self.rig, measured=(p.compliance + float(change[0]), p.gap_arcsec + float(change[1]))
         )
+
+    def units_own(self, mean: np.ndarray | None = None) -> np.ndarray:
+        """(k, 2) compliance and gap of each of several units beside what they have in common."""
+        mean, k = self.posterior.mean if mean is None else mean, self.units
+        return mean[k + 2 : k + 2 + 2 * k].reshape(k, 2)
 
     def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
         """The magnitude of each named cause, as docs/contract.md defines it."""
@@ -149,10 +157,7 @@ class SweepFit:
             rig = self.measured_rig()
             side = np.sign(history.torque_Nm + ahead.carried_Nm)
             total += rig.gap_arcsec / 2 * (history.sign - side) - rig.compliance * ahead.carried_Nm
-        for i, amplitudes in zip(
-            self.posterior.terms, self.posterior.amplitudes(self.evidence), strict=True
-        ):
-            term = self.evidence.terms[i]
+        for term, amplitudes in self._amplitudes(self.posterior):
             if term.owner == owner:
                 total += self.evidence.columns.all[:, term.at] @ amplitudes
         return total
@@ -171,11 +176,13 @@ class SweepFit:
             self.evidence.target
             - self.evidence.columns.base @ self.posterior.mean[: self.posterior.base_count]
         )
-        for i, amplitudes in zip(
-            self.posterior.terms, self.posterior.amplitudes(self.evidence), strict=True
-        ):
-            left = left - self.evidence.columns.all[:, self.evidence.terms[i].at] @ amplitudes
+        for term, amplitudes in self._amplitudes(self.posterior):
+            left = left - self.evidence.columns.all[:, term.at] @ amplitudes
         return left
+
+    def left_but_for_gap(self) -> np.ndarray:
+        """(n,) `residual` with the gap's step still in it."""
+        return self.residual() + self.rig.history.sign * self.gap_arcsec() / 2
 
     def residual_as_read(self) -> np.ndarray:
         """(n,) measured less predicted from the torque as it was read, its noise included."""
@@ -209,8 +216,8 @@ def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float
         elements[OFFSET] = (Element({}, (offset_Nm,)),)
     own = {}
     if k > 1:
-        pairs = mean[k + 2 : k + 2 + 2 * k].reshape(k, 2)
-        own = {name: (float(a), float(b)) for name, (a, b) in zip(sweep.units, pairs, strict=True)}
+        pairs = zip(sweep.units, fit.units_own(), strict=True)
+        own = {name: (float(a), float(b)) for name, (a, b) in pairs}
     return ExtendedModel(
         p.compliance + float(mean[k]),
         p.gap_arcsec + float(mean[k + 1]),

@@ -66,7 +66,7 @@ def _place_open(fit: SweepFit) -> bool:
 def _softer(fit: SweepFit) -> np.ndarray:
     """(n,) slope of the hardening's own twist, over the measured compliance."""
     history, cause = fit.rig.history, known_causes()[HARDENING]
-    step = SLOPE_SHARE * fit.rig.torque_Nm
+    step = SLOPE_SHARE * fit.rig.largest_Nm
     either = [
         cause.angle_arcsec(
             fit.elements()[HARDENING], replace(history, torque_Nm=history.torque_Nm + side * step)

@@ -41,7 +41,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.search import NAMED_COST
 from flexspline.pipeline.diagnosis.sweep.step_place import DEPENDENT
-from flexspline.pipeline.diagnosis.sweep.torque_offset import both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import on_both_sides
 
 COARSE_EVERY = 3
 """Of the forms, every third is tried at first: where no late angle is the best of these, none is. Else those
@@ -73,7 +73,7 @@ def late_angle_of(
     torque reading, or a twist that lags. What a race `explained` by causes may be there in any size.
     """
     history = less_jitter(prepared.sweep.history)
-    if ramp_s(history) == 0 or not both_ways(history.torque_Nm):
+    if ramp_s(history) == 0 or not on_both_sides(history.torque_Nm):
         return None
     gap = prepared.prediction.gap_arcsec
     angle, noise = prepared.sweep.angle_arcsec, prepared.noise.std_arcsec
@@ -107,7 +107,7 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     forms = [*by_time, at_a_place(history), softly(history), behind_friction(history)]
     coarse = replace(crossed, most_rows=COARSE_ROWS)
     fits = [coarse.best(tried[::COARSE_EVERY]) for tried in forms]
-    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+    best, own = _best_of(fits)
     # local polynomials take the gap's step for noise: what the best form leaves is less
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     if best is not own:
@@ -117,12 +117,17 @@ def _searched(crossed: CrossedRecord) -> _Searched:
         if own.log_likelihood < finer[1].log_likelihood:
             return _Searched(crossed, own, finer[1]).without_other_loops()
     fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
-    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+    best, own = _best_of(fits)
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     others = [crossed.of(fit.tried) for fit in fits[len(LATE_KINDS) :]]
     others += _rubbed(crossed, friction=fits[-1])
     own = crossed.best(_times_about(history, own.tried))
     return _Searched(crossed, own, max(others, key=likeliest)).without_other_loops()
+
+
+def _best_of(fits: list[CrossingFit]) -> tuple[CrossingFit, CrossingFit]:
+    """The likeliest of all, and of the late angles, which stand first."""
+    return max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
 
 
 def _times_about(history: History, tried: Tried) -> list[Tried]:
@@ -152,7 +157,7 @@ def _behind(alone: _Searched, whole: _Searched) -> float:
 def _rubbed(crossed: CrossedRecord, friction: CrossingFit) -> list[CrossingFit]:
     """The best friction near one of the first search, alone and beside a shifted reading."""
     history, coarse = crossed.history, friction.tried.value
-    apart = float(np.abs(history.torque_Nm).max()) / 100
+    apart = history.largest_Nm / 100
 
     def near(offset_Nm: float) -> CrossingFit:
         fine = np.maximum(coarse + apart * np.linspace(-1, 1, 4 * FINE_TIMES + 1), apart / 100)

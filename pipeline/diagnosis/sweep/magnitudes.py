@@ -98,7 +98,7 @@ def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[t
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:
     """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
     history = evidence.columns.rig.history
-    near = np.abs(history.torque_Nm) < NEAR_ZERO * np.abs(history.torque_Nm).max()
+    near = np.abs(history.torque_Nm) < NEAR_ZERO * history.largest_Nm
     rows = max(1, int((near & evidence.kept).sum()))
     return 2 * evidence.noise.std_arcsec / rows**0.5
 

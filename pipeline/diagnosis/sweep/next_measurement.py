@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -42,27 +43,37 @@ MORE_CYCLES = 40
 """Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
 
 
-def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
-    """Each plan holds a part like the record so far and a part where one thing is changed."""
-    h = prepared.rig.history
-    largest = float(np.abs(prepared.sweep.history.torque_Nm).max())
-    ramp = ramp_s(prepared.sweep.history) or DEFAULT_RAMP_S
-    warm = float(np.mean(h.temperature_C)) if h.temperature_C is not None else REFERENCE_C
-    last = int(h.cycle.max())
+@dataclass(frozen=True)
+class _PlannedCycles:
+    """Triangular cycles like those of a record, but for what is said of each."""
 
-    def cycles(
-        amplitudes: Sequence[float] = (1.0, 1.0), ramps: Sequence[float] = (1.0, 1.0),
+    largest_Nm: float
+    ramp_s: float
+    temperature_C: float
+
+    @classmethod
+    def like(cls, prepared: PreparedSweep) -> _PlannedCycles:
+        history, warm = prepared.sweep.history, prepared.rig.history.temperature_C
+        return cls(
+            history.largest_Nm,
+            ramp_s(history) or DEFAULT_RAMP_S,
+            REFERENCE_C if warm is None else float(np.mean(warm)),
+        )
+
+    def of(
+        self, amplitudes: Sequence[float] = (1.0, 1.0), ramps: Sequence[float] = (1.0, 1.0),
         warmer: Sequence[float] = (0.0, 0.0), places: Sequence[float] = (0.0, 0.0),
         numbers: Sequence[int] = (0, 0), hold: float = 0.0,
     ) -> History:  # fmt: skip
+        """Amplitudes, ramps and holds in multiples of the record's, K warmer, places [°], cycle numbers."""
         torque, time, temperature, place, cycle = [], [], [], [], []
         now = 0.0
         for a, r, w, p, c in zip(amplitudes, ramps, warmer, places, numbers, strict=True):
-            t, at = _triangle(largest * a, ramp * r * a, hold * ramp)
+            t, at = _triangle(self.largest_Nm * a, self.ramp_s * r * a, hold * self.ramp_s)
             torque.append(t)
             time.append(now + at)
             now += at[-1]
-            temperature.append(np.full(len(t), warm + w))
+            temperature.append(np.full(len(t), self.temperature_C + w))
             place.append(np.full(len(t), p))
             cycle.append(np.full(len(t), c))
         n = sum(map(len, torque))
@@ -71,41 +82,46 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
             np.concatenate(temperature), np.concatenate(place), exact=True,
         )  # fmt: skip
 
+
+def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
+    """Each plan holds a part like the record so far and a part where one thing is changed."""
+    h, cycles = prepared.rig.history, _PlannedCycles.like(prepared)
+    last = int(h.cycle.max())
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
     many = [place0 + p for p in POSITIONS_DEG]
     k, n = len(many), len(AMPLITUDES)
-    slower, faster, beyond = _rates_beyond(prepared.sweep.history, ramp)
+    slower, faster, beyond = _rates_beyond(prepared.sweep.history, cycles.ramp_s)
     same = (place0, place0)
     return [
         MeasurementPlan(
             "temperature_C",
             Doing("warmer"),
-            cycles(warmer=(0.0, WARMER_K), places=same, numbers=(last, last)),
+            cycles.of(warmer=(0.0, WARMER_K), places=same, numbers=(last, last)),
         ),
         MeasurementPlan(
             "torque_rate",
             Doing("beyond_own_rates" if beyond else "other_rates"),
-            cycles((1.0,) * 3, (1.0, slower, faster), (0.0,) * 3, (place0,) * 3, (last,) * 3),
+            cycles.of((1.0,) * 3, (1.0, slower, faster), (0.0,) * 3, (place0,) * 3, (last,) * 3),
         ),
         MeasurementPlan(
             "hold",
             Doing("hold"),
-            cycles(places=same, numbers=(last, last), hold=LONG_HOLD),
+            cycles.of(places=same, numbers=(last, last), hold=LONG_HOLD),
         ),
         MeasurementPlan(
             "torque_amplitude",
             LARGER,
-            cycles(AMPLITUDES, (1.0,) * n, (0.0,) * n, (place0,) * n, (last,) * n),
+            cycles.of(AMPLITUDES, (1.0,) * n, (0.0,) * n, (place0,) * n, (last,) * n),
         ),
         MeasurementPlan(
             "input_angle_deg",
             Doing("other_positions"),
-            cycles((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k),
+            cycles.of((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k),
         ),
         MeasurementPlan(
             "cycle",
             Doing("more_cycles"),
-            cycles(places=same, numbers=(last, last + MORE_CYCLES)),
+            cycles.of(places=same, numbers=(last, last + MORE_CYCLES)),
         ),
     ]
 
@@ -118,7 +134,7 @@ def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
     quickest, slowest = rate_range(history)
     if quickest < FASTER * slowest or slowest == 0:
         return FASTER, 1 / FASTER, False
-    typical = float(np.abs(history.torque_Nm).max()) / ramp_s
+    typical = history.largest_Nm / ramp_s
     return FASTER * typical / slowest, typical / (FASTER * quickest), True
 
 

@@ -55,7 +55,7 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
 
 def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
     """Whether an offset is sure and large enough to be said."""
-    least = OFFSET_LEAST[seen.nats > OFFSET_SURE] * prepared.rig.torque_Nm
+    least = OFFSET_LEAST[seen.nats > OFFSET_SURE] * prepared.rig.largest_Nm
     return seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > least
 
 
@@ -77,7 +77,7 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep,
         if seen is None or not _counts(seen, prepared):
             return ()
         if abs(seen.offset_Nm - offset_Nm) < max(
-            SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.torque_Nm
+            SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.largest_Nm
         ):
             return (found[0], *found[1:][-1:])  # one race is both
         offset_Nm = seen.offset_Nm
@@ -98,7 +98,7 @@ def wrong_side_rows(explained: ExplainedSweep) -> int:
 def _unsure_Nm(prepared: PreparedSweep) -> float:
     """Torque within which the side of the gap is unsure: nobody knows it nearer to the gap's step."""
     noise_Nm = torque_noise_Nm(prepared.rig.history)
-    return max(BESIDE_STEP * prepared.rig.torque_Nm, BAND_SIGMAS * noise_Nm)
+    return max(BESIDE_STEP * prepared.rig.largest_Nm, BAND_SIGMAS * noise_Nm)
 
 
 def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:

@@ -253,9 +253,8 @@ def _changes(noise: Noise, again: Noise) -> tuple[float, float]:
 def crossing_of(prepared: PreparedSweep, fit: SweepFit, rows: np.ndarray) -> Crossing | None:
     """The crossing as read in some rows (k,), with everything but the gap taken off the measured angle."""
     history = prepared.rig.history
-    gap = fit.gap_arcsec()
-    left = fit.residual() + history.sign * gap / 2
     return crossing(
-        history.torque_Nm[rows] + prepared.offset_Nm, left[rows], gap[rows],
+        history.torque_Nm[rows] + prepared.offset_Nm, fit.left_but_for_gap()[rows],
+        fit.gap_arcsec()[rows],
         prepared.noise.std_arcsec, torque_noise_Nm(history),
     )  # fmt: skip

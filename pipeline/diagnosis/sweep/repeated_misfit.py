@@ -52,7 +52,7 @@ def _places(prepared: PreparedSweep) -> np.ndarray | None:
     torque = steadied(history, STEADY_SIGMAS * torque_noise_Nm(history))
     up = direction_of_loading(history) > 0
     for width in PLACE_WIDTHS:
-        step = np.round(torque / (width * prepared.rig.torque_Nm)).astype(int)
+        step = np.round(torque / (width * prepared.rig.largest_Nm)).astype(int)
         _, place = np.unique(2 * step + up, return_inverse=True)
         visits = np.unique(
             np.column_stack([place, history.unit, history.cycle])[prepared.kept], axis=0

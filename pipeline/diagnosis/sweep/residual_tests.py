@@ -136,7 +136,7 @@ def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
     torque = steadied(h, STEADY_SIGMAS * torque_noise_Nm(h))
     found: dict[str, np.ndarray] = {
         "torque_Nm": torque,
-        "direction": torque + APART_TORQUES * prepared.rig.torque_Nm * side,
+        "direction": torque + APART_TORQUES * prepared.rig.largest_Nm * side,
         "cycle": h.cycle.astype(float),
     }
     if prepared.sweep.history.time_s is not None and h.time_s is not None:

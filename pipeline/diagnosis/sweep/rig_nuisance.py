@@ -40,7 +40,7 @@ def giving_way(rig: FitContext) -> Made:
     At once with the torque (a play operator), at a rate in proportion to what the lock cannot hold, or by
     another way in each load. With the torque: against it, it would take back what friction adds.
     """
-    history, largest = rig.history, rig.torque_Nm
+    history, largest = rig.history, rig.largest_Nm
     limits = np.array(YIELDS) * largest
     held = stops(history, history.torque_Nm, limits, np.zeros(len(limits)))
     for state in held.T:

@@ -81,7 +81,7 @@ def settling(history: History) -> np.ndarray:
 def before_far_turn(history: History) -> np.ndarray:
     """(n,) rows before a unit's torque first turns far from zero; all where it never does."""
     direction = rising(history, deadband_Nm(history) + FINEST_TORQUE_Nm)
-    far = SETTLED_AT * np.abs(history.torque_Nm).max()
+    far = SETTLED_AT * history.largest_Nm
     out = np.ones(len(history), bool)
     for rows in history.unit_slices:
         turned = [i for i in _turns(direction[rows]) if abs(history.torque_Nm[rows[i]]) > far]

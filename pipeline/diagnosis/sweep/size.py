@@ -75,7 +75,7 @@ def sweep_size(
     """
     step = -(-len(history) // MOST_SIZE_ROWS)
     h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
-    largest = float(np.abs(h.torque_Nm).max())
+    largest = h.largest_Nm
     far = (
         np.abs(h.torque_Nm) > BAND_SHARE * largest
     )  # beyond the crossing, whose rows may be on either side
@@ -124,7 +124,7 @@ def _line(
         columns[rows] -= own @ np.linalg.lstsq(own, columns[rows], rcond=None)[0]
     x, y = columns[:, :2], columns[:, 2]
     size = np.sqrt((x**2).sum(axis=0))
-    if len(y) < FEWEST_SIZE_ROWS or size[0] <= ROUNDING_OF_SUMS * np.abs(h.torque_Nm).max():
+    if len(y) < FEWEST_SIZE_ROWS or size[0] <= ROUNDING_OF_SUMS * h.largest_Nm:
         return None
     used = [0, 1] if size[1] > ROUNDING_OF_SUMS * np.sqrt(len(y)) else [0]
     inverse = np.linalg.pinv(x[:, used].T @ x[:, used])

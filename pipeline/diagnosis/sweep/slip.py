@@ -27,7 +27,7 @@ FEWEST_SLIP_ROWS = 3
 
 def slip_of(history: History, angle_arcsec: np.ndarray) -> Slip | None:
     """The median way that the angle (n,) goes on in the loads of one direction, where something slips."""
-    largest = float(np.abs(history.torque_Nm).max())
+    largest = history.largest_Nm
     ways: dict[int, list[float]] = {1: [], -1: []}
     chords: list[float] = []
     for rows in history.unit_slices:

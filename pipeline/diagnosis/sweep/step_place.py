@@ -43,7 +43,7 @@ TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
 
 def looped_functions(history: History) -> np.ndarray:
     """(n, k) `unlooped_functions`, friction elements, lags."""
-    largest = float(np.abs(history.torque_Nm).max())
+    largest = history.largest_Nm
     limits = np.array(TRIED_THRESHOLDS) * largest
     torque = steadied(history, deadband_Nm(history))
     beside = stops(history, torque, limits, np.zeros(len(limits))) / limits
@@ -56,7 +56,7 @@ def unlooped_functions(history: History) -> np.ndarray:
 
     Of the torque without its noise: a lag is smoother than the reading, and would stand in for it.
     """
-    x = less_jitter(history).torque_Nm / float(np.abs(history.torque_Nm).max())
+    x = less_jitter(history).torque_Nm / history.largest_Nm
     zeros, positions = zeros_of_cycles(history), stiffness_of_positions(history)
     return np.column_stack([*zeros, positions, x, np.abs(x), x * np.abs(x), x**3])
 
@@ -88,7 +88,7 @@ def stiffness_of_positions(history: History) -> np.ndarray:
     if history.input_angle_deg is None:
         return np.empty((len(history), 0))
     shape = dict(zip(KEYS, map(float, HARMONICS[-1]), strict=True))
-    largest = float(np.abs(history.torque_Nm).max())
+    largest = history.largest_Nm
     return harmonic(shape, history) * (history.torque_Nm / largest)[:, None]
 
 

@@ -24,7 +24,7 @@ def sudden_step(history: History, angle_arcsec: np.ndarray, kept: np.ndarray) ->
     takes (sᵀr)²/(sᵀs − |Qᵀs|²) off the sum of squares; the products are sums of the rows from the step on.
     """
     rows = np.flatnonzero(kept)
-    x = history.torque_Nm[rows] / np.abs(history.torque_Nm).max()
+    x = history.torque_Nm[rows] / history.largest_Nm
     zeros = history.unit[rows, None] == np.unique(history.unit[rows])
     direction = direction_of_loading(history)[rows]
     smooth = np.column_stack([zeros, x, np.abs(x), x * np.abs(x), x**3, np.sign(x), direction])

@@ -35,7 +35,7 @@ Made = Iterator[tuple[str, UnnamedForm, np.ndarray]]
 
 def _steady(rig: FitContext) -> np.ndarray:
     """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
-    return levelled_torque_Nm(rig.history) / rig.torque_Nm
+    return levelled_torque_Nm(rig.history) / rig.largest_Nm
 
 
 def over_torque(rig: FitContext) -> Made:
@@ -56,7 +56,7 @@ def softening(rig: FitContext) -> Made:
 
 def over_angle(rig: FitContext) -> Made:
     """Ripples over the output angle as simulated."""
-    steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
+    steady = replace(rig.history, torque_Nm=_steady(rig) * rig.largest_Nm)
     angle = rig.prediction.for_race.angle_arcsec(steady)
     yield from _ripples(angle / np.abs(angle).max(), "angle_arcsec")
 
@@ -68,7 +68,7 @@ def _ripples(x: np.ndarray, channel: str) -> Made:
 
 def over_direction(rig: FitContext) -> Made:
     """A loop wider on one side of zero than on the other: friction elements make none such."""
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = rig.history.torque_Nm / rig.largest_Nm
     direction = direction_of_loading(rig.history)
     basis = np.column_stack([direction * torque, direction * torque**3])
     yield "direction", UnnamedForm("uneven_loop"), basis
@@ -77,7 +77,7 @@ def over_direction(rig: FitContext) -> Made:
 def leading(rig: FitContext) -> Made:
     """Loops run through the wrong way round: friction and lag with their sign reversed."""
     yield "direction", UnnamedForm("leading"), direction_of_loading(rig.history)[:, None]
-    thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
+    thresholds = np.array(LEADING_THRESHOLDS) * rig.largest_Nm
     torque = steadied(rig.history, deadband_Nm(rig.history))
     states = stops(rig.history, torque, thresholds, np.zeros(len(thresholds))).T
     for r, state in zip(thresholds, states, strict=True):
@@ -85,7 +85,7 @@ def leading(rig: FitContext) -> Made:
         yield (
             "direction",
             UnnamedForm("leading"),
-            (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None],
+            (state / r - rig.history.torque_Nm / rig.largest_Nm)[:, None],
         )
     ramp = ramp_s(rig.history)
     for share in LEADING_LAGS if ramp > 0 else ():

@@ -25,8 +25,8 @@ OFFSET_STEPS = 141
 """Odd, so that one of the offsets tried is 0; the best is refined between its neighbours."""
 UNSEEN_SIGMAS = 3.0
 """Standard deviations of the torque noise: an offset within is none."""
-EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
-"""Share of the largest torque that must be passed both ways, by so many rows each."""
+EACH_SIDE, FEWEST_EACH_SIDE = 0.3, 4
+"""Share of the largest torque that must be passed on both sides of zero, by so many rows each."""
 SEEN_RATIO = 2.0
 """Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
 WITHIN_GAP = 0.25
@@ -69,7 +69,7 @@ def crossing(
     gap = np.broadcast_to(gap_arcsec, torque_Nm.shape)
     if gap.max() < SEEN_RATIO * noise_arcsec or largest == 0:
         return None
-    if not both_ways(torque_Nm):
+    if not on_both_sides(torque_Nm):
         return None
     near = np.abs(torque_Nm) < OFFSET_REACH * largest
     if not near.any():
@@ -113,7 +113,11 @@ def between_rows(torque_Nm: np.ndarray, place_Nm: float, nearest: int = 1) -> fl
     return float(after + np.partition(-below, nearest - 1)[nearest - 1])
 
 
-def both_ways(torque_Nm: np.ndarray) -> bool:
-    """Whether the torque goes far enough to both sides for a step between them to have a place."""
-    far = EACH_WAY * np.abs(torque_Nm).max()
-    return bool(min((torque_Nm > far).sum(), (torque_Nm < -far).sum()) >= FEWEST_EACH_WAY)
+def on_both_sides(torque_Nm: np.ndarray) -> bool:
+    """Whether the torque goes far enough to both sides of zero for a step between them to have a place.
+
+    Less is enough for a chord to hold the gap (`size.py`) or for a loop's width at zero to be seen
+    (`friction_place.py`).
+    """
+    far = EACH_SIDE * np.abs(torque_Nm).max()
+    return bool(min((torque_Nm > far).sum(), (torque_Nm < -far).sum()) >= FEWEST_EACH_SIDE)

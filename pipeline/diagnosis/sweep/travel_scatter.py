@@ -51,7 +51,7 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     way = np.cumsum(np.abs(np.diff(moved, prepend=moved[0])))[kept]
     time = history.time_or_rows(np.arange(len(kept)))
     pairs = _pairs(stretches_of(history, kept), _resting(history)[kept])
-    largest = prepared.rig.torque_Nm
+    largest = prepared.rig.largest_Nm
     found = [
         _slope(left, way / (share * largest), time[kept], pairs, prepared.noise)
         for share in REACHES

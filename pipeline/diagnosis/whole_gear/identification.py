@@ -112,12 +112,12 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     # an input that moves nothing on this gear has no value
     found = sorted((f for f in each if f.std < inf), key=lambda one: one.chi_square)
     plain = GearInputs("consistent", rms(off), base, len(off), tuple(found))
-    if chdtrc(len(off), base) > MISFIT_P_VALUE:
+    if _fits(base, len(off)):
         return plain
     if not found:
         return replace(plain, outcome="unknown")
     best = found[0]
-    if chdtrc(len(off) - 1, best.chi_square) < MISFIT_P_VALUE:
+    if not _fits(best.chi_square, len(off) - 1):
         return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)
     rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL_CHI_SQUARE]
     one = inputs[best.key]
@@ -156,11 +156,7 @@ def _of_pairs(
             learnt.std_arcsec,
         )
 
-    fit = [
-        p
-        for p in together(curve, inputs)
-        if chdtrc(plain.places - 2, p.chi_square) >= MISFIT_P_VALUE
-    ]
+    fit = [p for p in together(curve, inputs) if _fits(p.chi_square, plain.places - 2)]
     if not fit:
         return replace(plain, outcome="unknown")
     best = fit[0]
@@ -169,6 +165,10 @@ def _of_pairs(
         lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis, start
     )
     return replace(plain, outcome="pair", pairs=pairs, before_arcsec=before, left_arcsec=left)
+
+
+def _fits(chi_square: float, degrees_of_freedom: int) -> bool:
+    return bool(chdtrc(degrees_of_freedom, chi_square) >= MISFIT_P_VALUE)
 
 
 def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
@@ -186,7 +186,7 @@ def _on_other_cycles(
     cycles = np.unique(analysis.explained.prepared.rig.history.cycle)
     if len(cycles) < 2:
         return None, None
-    learnt, other = (central_curve(analysis, cycles[start::2].tolist()) for start in (0, 1))
+    learnt, other = (central_curve(analysis, cycles[odd::2].tolist()) for odd in (0, 1))
     if learnt is None or other is None:
         return None, None
     better = learn(_with_numerical(learnt, angles_as_recorded(chain, learnt, start)))

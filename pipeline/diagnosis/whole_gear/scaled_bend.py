@@ -32,7 +32,7 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     if prediction.bend is None:
         return prediction
     history = sweep.history
-    largest = float(np.abs(history.torque_Nm).max())
+    largest = history.largest_Nm
     rows = np.abs(history.torque_Nm) > BAND_SHARE * largest
     if int(rows.sum()) < FEWEST_BEND_ROWS:
         return prediction

@@ -18,7 +18,13 @@ from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, sa
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from flexspline.pipeline.diagnosis.prediction import Prediction
+
+DRAWN_TORQUE_RATIO = 1.04
+"""Torque at the panels' ends over the largest that was measured: its marks are whole."""
 
 
 def write_overview(path: Path, shown: SweepPictureData) -> None:
@@ -31,20 +37,8 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         above = figure.add_axes((0.095, 0.43, 0.875, 0.39))
         below = figure.add_axes((0.095, 0.104, 0.875, 0.295))
         angle = prediction.angle_arcsec(replace(shown.history, torque_Nm=torque)) + shown.nominal
-        for sign in (-1.0, 1.0):
-            t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)
-            line = prediction.compliance * t + sign * prediction.gap_arcsec / 2
-            if prediction.bend is not None:
-                line += prediction.bend.at(t)
-            spread = np.hypot(prediction.gap_std_arcsec / 2, prediction.compliance_std * t)
-            first = sign > 0
-            above.fill_between(
-                t, line - spread, line + spread, color=PALETTE[0], alpha=0.13, lw=0,
-                label="simulation's stated uncertainty, 1σ" if first and spread.any() else None,
-            )  # fmt: skip
-            above.plot(t, line, color=PALETTE[0], lw=1.6, label="simulation" if first else None)
-            below.fill_between(t, -spread, spread, color=PALETTE[0], alpha=0.13, lw=0)
-        below.axhline(0, color=PALETTE[0], lw=1.6)
+        end_Nm = DRAWN_TORQUE_RATIO * shown.largest_Nm
+        _simulation(above, below, prediction, end_Nm)
         for rises, colour, words in ((True, RISING, "rising"), (False, FALLING, "falling")):
             rows = thinned((shown.rises == rises) & ~inside)
             for axes, values in ((above, angle), (below, shown.nominal)):
@@ -66,7 +60,7 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
             )  # fmt: skip
             axes.axvline(0, color=MUTED, lw=0.6)
             axes.grid(True)
-            axes.set_xlim(-1.04 * shown.largest_Nm, 1.04 * shown.largest_Nm)
+            axes.set_xlim(-end_Nm, end_Nm)
         high = 1.12 * float(np.quantile(np.abs(shown.nominal[shown.kept]), 0.999))
         below.set_ylim(-high, high)
         above.tick_params(labelbottom=False)
@@ -83,6 +77,24 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         for axes in (above, below):
             keep_inside(axes)
         save_png(figure, path)
+
+
+def _simulation(above: Axes, below: Axes, prediction: Prediction, end_Nm: float) -> None:
+    """The simulated curve with its stated uncertainty, and that as a difference from itself."""
+    for sign in (-1.0, 1.0):
+        t = sign * np.linspace(1e-9, end_Nm, 50)
+        line = prediction.compliance * t + sign * prediction.gap_arcsec / 2
+        if prediction.bend is not None:
+            line += prediction.bend.at(t)
+        spread = np.hypot(prediction.gap_std_arcsec / 2, prediction.compliance_std * t)
+        first = sign > 0
+        above.fill_between(
+            t, line - spread, line + spread, color=PALETTE[0], alpha=0.13, lw=0,
+            label="simulation's stated uncertainty, 1σ" if first and spread.any() else None,
+        )  # fmt: skip
+        above.plot(t, line, color=PALETTE[0], lw=1.6, label="simulation" if first else None)
+        below.fill_between(t, -spread, spread, color=PALETTE[0], alpha=0.13, lw=0)
+    below.axhline(0, color=PALETTE[0], lw=1.6)
 
 
 def _not_used(shown: SweepPictureData) -> str:

@@ -8,7 +8,7 @@ from study_bench import GRID, study_of
 
 import flexspline
 from flexspline.geometry.keys import with_values
-from flexspline.pipeline.study.evaluate import STUDY_TORSION_TOLERANCE, Task, evaluate
+from flexspline.pipeline.study.evaluate import STUDY_TORSION_WIDTH, Task, evaluate
 from flexspline.pipeline.study.figures import needed
 from flexspline.pipeline.study.source import solves_of
 from flexspline.pipeline.study.study import StudyError
@@ -26,10 +26,10 @@ def test_a_row_says_what_the_command_says() -> None:
     assert row.reason == ""
     gear = flexspline.gear(with_values(HOLE_FREE, values))
     # the shaft is solved to another tolerance, and is a part of the compliance
-    same = pytest.approx(gear.K2_Nm_per_rad, rel=STUDY_TORSION_TOLERANCE)
+    same = pytest.approx(gear.K2_Nm_per_rad, rel=STUDY_TORSION_WIDTH)
     assert row.figures["K2_Nm_per_rad"] == same
     assert row.figures["lost_motion_arcsec"] == pytest.approx(
-        gear.lost_motion_arcsec, rel=STUDY_TORSION_TOLERANCE
+        gear.lost_motion_arcsec, rel=STUDY_TORSION_WIDTH
     )
     assert row.figures["teeth_in_contact"] == gear.teeth_in_contact
 

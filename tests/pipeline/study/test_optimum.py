@@ -8,7 +8,7 @@ import pytest
 from study_bench import LENGTH, WALL, study_of, threads
 
 from flexspline.pipeline.study.claims import Row
-from flexspline.pipeline.study.evaluate import STUDY_TORSION_TOLERANCE, Outcome, Task, evaluate
+from flexspline.pipeline.study.evaluate import STUDY_TORSION_WIDTH, Outcome, Task, evaluate
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import run_study, trial_store_of
 
@@ -93,7 +93,7 @@ def test_no_worse_than_a_dense_grid_of_the_cup(tmp_path: Path) -> None:
     reached = best.pareto[0].outcome.figures["K_b_Nm_per_rad"]
     dense = grid.pareto[0].outcome.figures["K_b_Nm_per_rad"]
     # K is known to half the distance of its bounds, and a grid's best is the luckiest of its points
-    assert reached >= dense * (1 - STUDY_TORSION_TOLERANCE / 2)
+    assert reached >= dense * (1 - STUDY_TORSION_WIDTH / 2)
 
 
 @pytest.mark.long

@@ -152,7 +152,7 @@ def test_slopes_are_of_the_load_case_in_the_sum(bench) -> None:
         change[case] = np.log(
             bench.as_in_sum(thicker, "flexspline") / bench.as_in_sum(here, "flexspline")
         )
-        # as the compliance that is compared with rows changes, known to BENCH_LOBE_TOLERANCE at the lobes
+        # as the compliance that is compared with rows changes, known to BENCH_LOBE_WIDTH at the lobes
         compared = np.log(
             bench.compliance(thicker, "flexspline") / bench.compliance(here, "flexspline")
         )
