@@ -17,10 +17,10 @@ def once(find: Callable[Concatenate[History, P], T]) -> Callable[Concatenate[His
     name = f"{find.__module__}.{find.__qualname__}"
 
     @wraps(find)
-    def found(history: History, /, *numbers: P.args, **none: P.kwargs) -> T:
-        key = (name, *numbers)
+    def found(history: History, /, *numbers: P.args, **named: P.kwargs) -> T:
+        key = (name, *numbers, *sorted(named.items()))
         if key not in history.memo:
-            history.memo[key] = find(history, *numbers, **none)
+            history.memo[key] = find(history, *numbers, **named)
         answer: T = history.memo[key]
         return answer
 

@@ -23,5 +23,7 @@ def test_it_is_found_once_for_each_number_and_each_history() -> None:
     history = History.course(np.array([1.0, 2.0, 3.0]))
     assert [beyond(history, limit) for limit in (1.5, 1.5, 2.5, 1.5)] == [2, 2, 1, 2]
     assert ASKED == [1.5, 2.5]
+    assert beyond(history, limit_Nm=0.5) == 3
+    assert ASKED.pop() == 0.5
     assert beyond(replace(history, torque_Nm=np.zeros(3)), 1.5) == 0
     assert ASKED == [1.5, 2.5, 1.5]
