@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
@@ -45,6 +47,7 @@ def _off_parabola(readings: np.ndarray, t: np.ndarray) -> np.ndarray:
     if not apart.any():
         return np.array([np.inf])
     four, at = four[apart], at[apart] / (at[apart, -1:] - at[apart, :1])
-    others = at[:, :, None] - at[:, None, :] + np.eye(4)
-    weight = 1 / others.prod(axis=2)
+    weight = np.ones_like(at)
+    for one, other in permutations(range(4), 2):
+        weight[:, one] /= at[:, one] - at[:, other]
     return np.asarray((weight * four).sum(axis=1) / np.linalg.norm(weight, axis=1))
