@@ -4,24 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Concatenate, ParamSpec, TypeVar
+from typing import TypeVar, TypeVarTuple
+
+import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 
-P = ParamSpec("P")
+Numbers = TypeVarTuple("Numbers")
 T = TypeVar("T")
 
 
-def once(find: Callable[Concatenate[History, P], T]) -> Callable[Concatenate[History, P], T]:
-    """`find`, whose answer for a history, and for the numbers given beside it, stays in its `memo`."""
+def once(find: Callable[[History, *Numbers], T]) -> Callable[[History, *Numbers], T]:
+    """`find`, whose answer for a history, and for the numbers given beside it, stays in its `memo`.
+
+    An array that is kept cannot be written to: the next to ask gets the same one.
+    """
     name = f"{find.__module__}.{find.__qualname__}"
 
     @wraps(find)
-    def found(history: History, /, *numbers: P.args, **named: P.kwargs) -> T:
-        key = (name, *numbers, *sorted(named.items()))
+    def found(history: History, *numbers: *Numbers) -> T:
+        key = (name, *numbers)
         if key not in history.memo:
-            history.memo[key] = find(history, *numbers, **named)
-        answer: T = history.memo[key]
-        return answer
+            answer = find(history, *numbers)
+            if isinstance(answer, np.ndarray):
+                answer.setflags(write=False)
+            history.memo[key] = answer
+        kept: T = history.memo[key]
+        return kept
 
     return found

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.corners import corners_of
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -21,7 +22,7 @@ FEWEST_PER_CYCLE = 150
 NOISE_SIGMAS = 4.0
 """Of the torque's noise: a reading farther from those about it, one of 16 000, is a step of the torque."""
 LEAST_ROUNDED = 0.1
-"""Of what a mean over a block rounds the sharpest corner off by; the last digit of a torque is less."""
+"""Of what a mean over a block rounds the sharpest corner off by: less is a bend."""
 SPIKE = 6.0
 """Standard deviations from the mean of both neighbours; one row of normal noise in 500 million."""
 
@@ -45,12 +46,13 @@ def thinned(sweep: Sweep) -> Sweep:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
     torque, corner = _steady(h, block)
     near = (np.abs(torque) < crossing_band_Nm(h)) & _passing(h, torque, block)
+    turned = _turns(h, keys, block)
     groups: list[np.ndarray] = []
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
         rows = rows[corner[rows] | ~_spikes(sweep.angle_arcsec[rows])]
         single = near[rows] | corner[rows] | _beside_jumps(sweep.angle_arcsec[rows])
-        groups += _blocks(rows, single, block)
+        groups += _blocks(rows, single, np.searchsorted(rows, turned), block)
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
@@ -62,19 +64,20 @@ def _steady(history: History, block: int) -> tuple[np.ndarray, np.ndarray]:
 
     Its own reading, noisier than a mean over a block, would choose which rows count as near a limit.
     """
-    torque = _smooth(history, history.torque_Nm, block)
+    torque = _smooth(history.unit_slices, history.torque_Nm, block)
     rounded, noise = np.abs(history.torque_Nm - torque), torque_noise_Nm(history)
-    about = rounded > max(SPIKE * noise, LEAST_ROUNDED * float(rounded.max()))
+    as_written = float(np.median(rounded))  # the last digit's rounding, where there is no noise
+    about = rounded > max(SPIKE * noise, SPIKE * as_written, LEAST_ROUNDED * float(rounded.max()))
     corner = np.zeros(len(history), bool)
     for run in np.split(np.arange(len(about)), np.flatnonzero(np.diff(about)) + 1):
         corner[run[np.argmax(rounded[run])]] = about[run[0]]
     return np.where(rounded > NOISE_SIGMAS * noise, history.torque_Nm, torque), corner
 
 
-def _smooth(history: History, values: np.ndarray, block: int) -> np.ndarray:
-    """(n,) means over a block of rows about each row, within its unit."""
-    smooth = np.empty(len(history))
-    for rows in history.unit_slices:
+def _smooth(stretches: list[np.ndarray], values: np.ndarray, block: int) -> np.ndarray:
+    """(n,) means over a block of rows about each row, within its stretch of rows."""
+    smooth = np.empty(len(values))
+    for rows in stretches:
         smooth[rows], _ = moving_mean(values[rows], block // 2)
     return smooth
 
@@ -89,12 +92,37 @@ def _passing(history: History, steady_Nm: np.ndarray, block: int) -> np.ndarray:
     return moved > NOISE_SIGMAS * torque_noise_Nm(history) * np.sqrt(2 / block)
 
 
-def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
-    """Blocks of neighbouring rows (m,); each row near the gap's crossing stays by itself.
+def _turns(history: History, keys: np.ndarray, block: int) -> np.ndarray:
+    """(k,) rows at which the torque's programme turns a corner, as means over whole blocks show it.
 
-    A mean over both sides of the gap is on neither.
+    Single readings show it less, the noisier they are.
     """
-    edges = np.flatnonzero(np.diff(near.astype(int)) != 0) + 1
+    if history.time_s is None:
+        return np.zeros(0, int)
+    of_block = np.arange(len(history)) // block
+    first = np.flatnonzero(np.diff(of_block, prepend=-1) | np.diff(keys, prepend=keys[0] - 1))
+    count = np.diff(first, append=len(history))
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.add.reduceat(values, first) / count
+
+    means = History(
+        mean(history.torque_Nm), history.unit[first], history.cycle[first], mean(history.time_s)
+    )
+    starts = [rows[0] for rows in history.unit_slices]
+    return np.array([
+        starts[c.unit] + np.searchsorted(history.time_s[history.unit_slices[c.unit]], c.time_s)
+        for c in corners_of(means)
+    ], int)  # fmt: skip
+
+
+def _blocks(rows: np.ndarray, near: np.ndarray, turned: np.ndarray, block: int) -> list[np.ndarray]:
+    """Blocks of neighbouring rows (m,), none over a turn; each row near the gap's crossing stays by itself.
+
+    A mean over both sides of the gap, or of a friction loop, is on neither.
+    """
+    edges = np.union1d(np.flatnonzero(np.diff(near.astype(int)) != 0) + 1, turned)
+    edges = edges[(edges > 0) & (edges < len(rows))]
     found: list[np.ndarray] = []
     for part, inside in zip(np.split(rows, edges), np.split(near, edges), strict=True):
         if len(part):
@@ -165,7 +193,7 @@ def _averaged(
     torque[alone] = steady_Nm[first[alone]]
     temperature = maybe(h.temperature_C)
     if temperature is not None and h.temperature_C is not None:
-        temperature[alone] = _smooth(h, h.temperature_C, block)[first[alone]]
+        temperature[alone] = _smooth(h.cycle_slices, h.temperature_C, block)[first[alone]]
     history = History(
         torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), temperature,

@@ -30,7 +30,8 @@ from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on
 
 SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.6, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
-for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
+for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51; of a gear of 0.7 of
+the simulated stiffness beside friction 0.67 was left."""
 LAW_UNSURE = 0.02
 """Of the torque that friction ahead of the gap carries, by the law by which it slides. Of 24 made-up records
 68 % of the sizes were within 2.2 % of the truth, 95 % within 4.4 %, the noise's share in it."""

@@ -51,9 +51,9 @@ NOISE_ROUNDS = 4
 NOISE_ALIKE = 0.2
 """Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
 NOISE_FALLEN = 1.1
-"""Of the log of its variance, or of its slow part's power, by which it must fall, once a best set has left
-it, to be found again: a factor of three. What falls by less is the shapes' misfit, up to 1.4 times the noise;
-more terms would fit it."""
+"""Of the log of its variance, by which it must fall, once a best set has left it, to be found again: a factor
+of three. What falls by less is the shapes' misfit, up to 1.4 times the noise; more terms would fit it. Of its
+slow part's power too, where the variance falls with it: an effect was in the slow part."""
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
@@ -113,7 +113,10 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     for number in range(NOISE_ROUNDS):
         named = with_tuned_shapes(_evidence(prepared), is_named)
         search = Search(named.evidence)
-        search.run([(), named.top.terms])
+        search.run()
+        search.run(
+            [named.top.terms]
+        )  # apart: from a good start growth ends that goes on from nothing
         best = search.exchanged()
         prepared = replace(prepared, columns=search.evidence.columns)
         left = fit_regressors(search.evidence, best.terms).residual()
@@ -122,7 +125,7 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
         if before is not None and min(changes) < -NOISE_ALIKE:
             prepared, search = before
             break
-        fallen = -min(changes) > NOISE_FALLEN
+        fallen = -min(changes) > NOISE_FALLEN and -changes[0] > NOISE_ALIKE
         if number > 0 and not fallen and max(changes) < NOISE_ALIKE:
             break
         if number + 1 < NOISE_ROUNDS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.once import once
@@ -18,12 +19,21 @@ def beyond(history: History, limit_Nm: float) -> int:
     return int((history.torque_Nm > limit_Nm).sum())
 
 
+@once
+def doubled(history: History) -> np.ndarray:
+    return 2.0 * history.torque_Nm
+
+
 def test_it_is_found_once_for_each_number_and_each_history() -> None:
     ASKED.clear()
     history = History.course(np.array([1.0, 2.0, 3.0]))
     assert [beyond(history, limit) for limit in (1.5, 1.5, 2.5, 1.5)] == [2, 2, 1, 2]
     assert ASKED == [1.5, 2.5]
-    assert beyond(history, limit_Nm=0.5) == 3
-    assert ASKED.pop() == 0.5
     assert beyond(replace(history, torque_Nm=np.zeros(3)), 1.5) == 0
     assert ASKED == [1.5, 2.5, 1.5]
+
+
+def test_what_is_kept_cannot_be_written_to() -> None:
+    history = History.course(np.array([1.0, 2.0, 3.0]))
+    with pytest.raises(ValueError, match="read-only"):
+        doubled(history)[0] = 0.0

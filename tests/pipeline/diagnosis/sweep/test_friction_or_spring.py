@@ -35,13 +35,16 @@ def test_half_the_stiffness_beside_friction_is_a_spring_that_the_simulation_lack
     # twice the compliance is 100 % more, whatever part of it the friction takes up
     spring = causes["series_compliance"]
     assert spring.magnitude == pytest.approx(100.0, abs=2 * spring.magnitude_std)
-    assert spring.magnitude_std < 25.0
+    assert spring.magnitude_std < 18.0
     assert spring.alternatives == ("stiffness_hardening",)
     assert "friction_hysteresis" in causes
 
 
-def test_friction_that_takes_the_spring_s_twist_has_it_for_a_rival(tmp_path: Path) -> None:
-    found = diagnosed(0.6, tmp_path)
+@pytest.mark.parametrize("stiffness", [0.7, pytest.param(0.6, marks=pytest.mark.long)])
+def test_friction_that_takes_the_spring_s_twist_has_it_for_a_rival(
+    stiffness: float, tmp_path: Path
+) -> None:
+    found = diagnosed(stiffness, tmp_path)
     rivals = {c.id: c.alternatives for c in found.outcome.causes}
     assert found.verdict == "ambiguous"
     # all cycles run at one rate: a lag as long as a ramp looks the same, and another rate tells it at once
