@@ -94,10 +94,7 @@ def _by_itself(
     """A case that `solve` answers on a meridian without another case's answer."""
 
     def of_part(flexspline: PartModel) -> Stiffness:
-        own, width = (
-            flexspline.material,
-            flexspline.tolerance,
-        )  # the whole width: half of what is asked
+        own, width = flexspline.material, flexspline.tolerance
         return by_harmonics(
             flexspline,
             figure_of(case),

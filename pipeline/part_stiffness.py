@@ -56,7 +56,7 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
                 part.meridian,
                 model.material,
                 part.driven,
-                model.tolerance,  # as the bounds' whole width: half of what is asked
+                model.tolerance,
                 Deadline(STAGE_SECONDS),
             )
 

@@ -81,7 +81,10 @@ class PartModel:
 
     @property
     def tolerance(self) -> float:
-        """Wanted error of K, as a fraction: `solver.tolerance_pct`."""
+        """Wanted error of K, ±, as a fraction: `solver.tolerance_pct`.
+
+        On a meridian the whole width of the bounds is brought below it: K is then known to ± half of it.
+        """
         return self.context.design.solver.tolerance
 
     @property

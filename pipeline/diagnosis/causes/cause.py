@@ -40,9 +40,9 @@ class FitContext:
     def gap_arcsec(self) -> float:
         return self.measured[1] if self.measured else self.prediction.gap_arcsec
 
-    @cached_property
+    @property
     def largest_Nm(self) -> float:
-        """Largest torque."""
+        """Largest torque, of either sign."""
         return self.history.largest_Nm
 
     @cached_property
