@@ -32,8 +32,9 @@ def thinned(sweep: Sweep) -> Sweep:
 
     Torque, angle and every channel are averaged over the same rows, so a straight branch stays what it
     was. The row at a corner of the torque stays single: what has a memory remembers how far the torque went.
-    Spikes of single rows are taken out first. Where cycles are many and short, whole cycles are left out
-    instead, evenly.
+    Where the torque's noise hides which row that is, blocks end at the corner, within some rows. Spikes of
+    single rows are taken out first. Where cycles are many and short, whole cycles are left out instead,
+    evenly.
     """
     n = len(sweep)
     if n <= MOST_FIT_ROWS:
@@ -46,13 +47,13 @@ def thinned(sweep: Sweep) -> Sweep:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
     torque, corner = _steady(h, block)
     near = (np.abs(torque) < crossing_band_Nm(h)) & _passing(h, torque, block)
-    turned = _turns(h, keys, block)
+    at_corners = _rows_at_corners(h, keys, block)
     groups: list[np.ndarray] = []
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
         rows = rows[corner[rows] | ~_spikes(sweep.angle_arcsec[rows])]
         single = near[rows] | corner[rows] | _beside_jumps(sweep.angle_arcsec[rows])
-        groups += _blocks(rows, single, np.searchsorted(rows, turned), block)
+        groups += _blocks(rows, single, np.searchsorted(rows, at_corners), block)
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
@@ -67,7 +68,7 @@ def _steady(history: History, block: int) -> tuple[np.ndarray, np.ndarray]:
     torque = _smooth(history.unit_slices, history.torque_Nm, block)
     rounded, noise = np.abs(history.torque_Nm - torque), torque_noise_Nm(history)
     as_written = float(np.median(rounded))  # the last digit's rounding, where there is no noise
-    about = rounded > max(SPIKE * noise, SPIKE * as_written, LEAST_ROUNDED * float(rounded.max()))
+    about = rounded > max(SPIKE * max(noise, as_written), LEAST_ROUNDED * float(rounded.max()))
     corner = np.zeros(len(history), bool)
     for run in np.split(np.arange(len(about)), np.flatnonzero(np.diff(about)) + 1):
         corner[run[np.argmax(rounded[run])]] = about[run[0]]
@@ -92,7 +93,7 @@ def _passing(history: History, steady_Nm: np.ndarray, block: int) -> np.ndarray:
     return moved > NOISE_SIGMAS * torque_noise_Nm(history) * np.sqrt(2 / block)
 
 
-def _turns(history: History, keys: np.ndarray, block: int) -> np.ndarray:
+def _rows_at_corners(history: History, keys: np.ndarray, block: int) -> np.ndarray:
     """(k,) rows at which the torque's programme turns a corner, as means over whole blocks show it.
 
     Single readings show it less, the noisier they are.
@@ -116,12 +117,14 @@ def _turns(history: History, keys: np.ndarray, block: int) -> np.ndarray:
     ], int)  # fmt: skip
 
 
-def _blocks(rows: np.ndarray, near: np.ndarray, turned: np.ndarray, block: int) -> list[np.ndarray]:
-    """Blocks of neighbouring rows (m,), none over a turn; each row near the gap's crossing stays by itself.
+def _blocks(
+    rows: np.ndarray, near: np.ndarray, at_corners: np.ndarray, block: int
+) -> list[np.ndarray]:
+    """Blocks of neighbouring rows (m,), none over a corner; each row near the gap's crossing stays by itself.
 
     A mean over both sides of the gap, or of a friction loop, is on neither.
     """
-    edges = np.union1d(np.flatnonzero(np.diff(near.astype(int)) != 0) + 1, turned)
+    edges = np.union1d(np.flatnonzero(np.diff(near.astype(int)) != 0) + 1, at_corners)
     edges = edges[(edges > 0) & (edges < len(rows))]
     found: list[np.ndarray] = []
     for part, inside in zip(np.split(rows, edges), np.split(near, edges), strict=True):

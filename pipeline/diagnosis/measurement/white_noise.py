@@ -29,9 +29,8 @@ def white_noise(readings: np.ndarray, t: np.ndarray) -> float | None:
     share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
     off = readings[1:-1] - (1 - share) * readings[:-2] - share * readings[2:]
     line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA
-    even = (
-        np.median(np.abs(np.diff(readings, 3))) / MAD_PER_SIGMA / np.sqrt(20)
-    )  # 1² + 3² + 3² + 1²
+    # 20 = 1² + 3² + 3² + 1²
+    even = np.median(np.abs(np.diff(readings, 3))) / MAD_PER_SIGMA / np.sqrt(20)
     timed = np.median(np.abs(_off_parabola(readings, t))) / MAD_PER_SIGMA
     first = np.quantile(np.abs(np.diff(readings)), 0.2) / FIFTH_PER_SIGMA / np.sqrt(2)
     return float(min(line, even, timed, first))

@@ -113,10 +113,9 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     for number in range(NOISE_ROUNDS):
         named = with_tuned_shapes(_evidence(prepared), is_named)
         search = Search(named.evidence)
+        # apart: beside a good start growth ends that goes on from nothing
         search.run()
-        search.run(
-            [named.top.terms]
-        )  # apart: from a good start growth ends that goes on from nothing
+        search.run([named.top.terms])
         best = search.exchanged()
         prepared = replace(prepared, columns=search.evidence.columns)
         left = fit_regressors(search.evidence, best.terms).residual()
