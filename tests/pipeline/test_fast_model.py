@@ -26,13 +26,13 @@ def walled(wall_mm: float) -> Design:
 
 
 def test_the_last_of_the_refinements_is_what_is_found_in_one_go() -> None:
-    design = walled(0.41)
+    design = walled(0.4137)  # no other test asks for it, so its refinement has not begun
     own = design.material.flexspline
     first = fast_model.first_field(design)
     last = fast_model.field(design, "wave_generator")
     whole = ellipse_stress(
         design.part("flexspline").meridian, Elastic(own.youngs_modulus_GPa * 1e3, own.poissons_ratio),
-        design.gear.centre_distance_mm, 0.41, PEAK_STRESS_TOLERANCE,
+        design.gear.centre_distance_mm, 0.4137, PEAK_STRESS_TOLERANCE,
     )  # fmt: skip
     assert len(first.levels) < len(last.levels) == len(whole.levels)
     # the page solves for 1 GPa and 1 mm and scales: equal but for rounding

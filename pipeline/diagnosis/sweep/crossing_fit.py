@@ -107,7 +107,9 @@ class CrossedRecord:
         for _ in range(WEIGHINGS):
             found = weighted_fit(basis, angle, weight)
             off = np.abs(angle - basis @ found) / deviation
-            weight = 1 / deviation / np.maximum(1, off / ROBUST_DEVIATIONS)
+            before, weight = weight, 1 / deviation / np.maximum(1, off / ROBUST_DEVIATIONS)
+            if np.array_equal(weight, before):
+                break
         if found[0] < LEAST_STEP * self.gap_arcsec:
             return CrossingFit(tried, -np.inf, np.inf)
         # a row that lies anywhere costs what a spike does

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import (
@@ -32,6 +33,9 @@ DEPENDENT = 4.0
 SINGULAR_SHARE = 1e-12
 """Of the normal equations' largest eigenvalue: functions that are one but for 1e-6 share their coefficient.
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
+REGULAR_SHARE = 1e-4
+"""Of a Cholesky factor's largest pivot: where none is smaller, no eigenvalue is near `SINGULAR_SHARE` (squares of
+pivots are like eigenvalues), and the factor gives the same coefficients in a tenth of the time."""
 ROBUST_DEVIATIONS = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
 CONSTANT_SHARE = 1e-12
@@ -143,6 +147,10 @@ def weighted_fit(basis: np.ndarray, values: np.ndarray, weight: np.ndarray) -> n
     """Coefficients (k,) of the functions (n, k) that are nearest to values (n,), each row weighted (n,)."""
     weighted = basis * weight[:, None]
     matrix, right = weighted.T @ weighted, weighted.T @ (values * weight)
+    factor, failed = dpotrf(matrix, lower=True)
+    pivots = np.diag(factor)
+    if failed == 0 and pivots.min() > REGULAR_SHARE * pivots.max():
+        return np.asarray(dpotrs(factor, right, lower=True)[0])
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=SINGULAR_SHARE)[0])
 
 
