@@ -34,8 +34,8 @@ SINGULAR_SHARE = 1e-12
 """Of the normal equations' largest eigenvalue: functions that are one but for 1e-6 share their coefficient.
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
 REGULAR_SHARE = 1e-4
-"""Of a Cholesky factor's largest pivot: where none is smaller, no eigenvalue is near `SINGULAR_SHARE` (squares of
-pivots are like eigenvalues), and the factor gives the same coefficients in a tenth of the time."""
+"""Of a Cholesky factor's largest pivot: where none is smaller, no eigenvalue is near `SINGULAR_SHARE`, as
+eigenvalues are like squares of pivots. The factor then gives the same coefficients in a tenth of the time."""
 ROBUST_DEVIATIONS = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
 CONSTANT_SHARE = 1e-12
