@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import AT_CORNER, programme_edges
 from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import rms
 
@@ -25,8 +26,6 @@ LARGEST_TORQUE_RATIO = 1.05
 MOVED_RIG_STEPS, MOVED_RIG_SIGMAS = 2.0, 3.0
 """Usual steps of torque, and deviations of what two ways say, beyond which a rig has moved between two rows:
 one that stood there, and turned then, would seem to have gone on."""
-TURNS = ("lost_turns", 0.0)
-"""Key of a history's lost turns: those of the reading, where its torque was made of one."""
 
 
 @dataclass(frozen=True)
@@ -52,19 +51,13 @@ def turned_unseen(history: History) -> np.ndarray:
 
 def turning_like(history: History, made: History) -> History:
     """`made`, of the same rows, whose torque was made of the history's and turns where that does."""
-    made.memo[TURNS] = lost_turns(history)
+    lost_turns.is_known(made, lost_turns(history))
     return made
 
 
+@once
 def lost_turns(history: History) -> LostTurns:
     """Where the straight ways on either side of a loss of rows, followed between them, meet."""
-    if TURNS not in history.memo:
-        history.memo[TURNS] = _lost_turns(history)
-    found: LostTurns = history.memo[TURNS]
-    return found
-
-
-def _lost_turns(history: History) -> LostTurns:
     found: dict[int, float] = {}
     if history.time_s is not None and not history.exact:
         units = history.unit_slices

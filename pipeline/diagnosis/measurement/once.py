@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import TypeVar, TypeVarTuple
+from collections.abc import Callable, Hashable
+from functools import update_wrapper
+from typing import Generic, TypeVar, TypeVarTuple
 
 import numpy as np
 
@@ -14,22 +14,29 @@ Numbers = TypeVarTuple("Numbers")
 T = TypeVar("T")
 
 
-def once(find: Callable[[History, *Numbers], T]) -> Callable[[History, *Numbers], T]:
-    """`find`, whose answer for a history, and for the numbers given beside it, stays in its `memo`.
+class once(Generic[*Numbers, T]):
+    """A function whose answer for a history, and for the numbers given beside it, stays in its `memo`.
 
     An array that is kept cannot be written to: the next to ask gets the same one.
     """
-    name = f"{find.__module__}.{find.__qualname__}"
 
-    @wraps(find)
-    def found(history: History, *numbers: *Numbers) -> T:
-        key = (name, *numbers)
+    def __init__(self, find: Callable[[History, *Numbers], T]) -> None:
+        update_wrapper(self, find)
+        self._find = find
+        self._name = f"{find.__module__}.{find.__qualname__}"
+
+    def __call__(self, history: History, *numbers: *Numbers) -> T:
+        key = self._key(numbers)
         if key not in history.memo:
-            answer = find(history, *numbers)
-            if isinstance(answer, np.ndarray):
-                answer.setflags(write=False)
-            history.memo[key] = answer
+            self.is_known(history, self._find(history, *numbers), *numbers)
         kept: T = history.memo[key]
         return kept
 
-    return found
+    def is_known(self, history: History, answer: T, *numbers: *Numbers) -> None:
+        """Keep an answer that is known already: a history made of another has what that one had."""
+        if isinstance(answer, np.ndarray):
+            answer.setflags(write=False)
+        history.memo[self._key(numbers)] = answer
+
+    def _key(self, numbers: tuple[Hashable, ...]) -> tuple[Hashable, ...]:
+        return self._name, *numbers

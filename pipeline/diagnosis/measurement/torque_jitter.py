@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, pro
 from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
 from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import (
-    TORQUE_NOISE,
+    noise_of_usual_rows_Nm,
     torque_noise_of_rows_Nm,
 )
 from flexspline.pipeline.diagnosis.robust import rms
@@ -87,7 +87,7 @@ def less_jitter(history: History) -> History:
     """The history with its torque less the noise, as far as the rows around each one know it."""
     torque = history.torque_Nm - jitter(history, widest(history))
     cleared = turning_like(history, replace(history, torque_Nm=torque))
-    cleared.memo[TORQUE_NOISE] = np.full(len(history), _left_Nm(reading_of(history)))
+    noise_of_usual_rows_Nm.is_known(cleared, np.full(len(history), _left_Nm(reading_of(history))))
     return cleared
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 DEADBAND_SIGMAS = 2.0
@@ -25,8 +26,6 @@ LEVELS_APART, LEVEL_WIDTH, FEWEST_OF_LEVEL = 10.0, 0.3, 3
 of the least distance between two; and readings of each, on the average."""
 RESTLESS_SHARE = 0.3
 """Of the rows, at which what is rounded changes its pace: two at each step, of seven rows and fewer."""
-TORQUE_NOISE = ("torque_noise", 0.0)
-"""Key of a history's torque noise."""
 
 
 def deadband_Nm(history: History) -> float:
@@ -39,25 +38,17 @@ def torque_noise_Nm(history: History, rows: np.ndarray | None = None) -> float:
 
     Of the whole record or of some `rows`, those of a unit; the noisiest cycle's where cycles are unlike.
     """
-    noise = _noise_Nm(history)
+    noise = noise_of_usual_rows_Nm(history)
     return float(noise.max() if rows is None else noise[rows].max())
 
 
 def torque_noise_of_rows_Nm(history: History) -> np.ndarray:
     """(n,) of each row [N·m]: a mean of more readings has less."""
-    noise = _noise_Nm(history)
+    noise = noise_of_usual_rows_Nm(history)
     if history.readings is None:
         return noise
     of_usual = np.median(history.readings[_usual(history)])
     return np.asarray(noise * np.sqrt(of_usual / history.readings))
-
-
-def _noise_Nm(history: History) -> np.ndarray:
-    """(n,) in rows of the usual number of readings; found once."""
-    if TORQUE_NOISE not in history.memo:
-        history.memo[TORQUE_NOISE] = _torque_noise_Nm(history)
-    noise: np.ndarray = history.memo[TORQUE_NOISE]
-    return noise
 
 
 def _usual(history: History) -> np.ndarray:
@@ -67,8 +58,12 @@ def _usual(history: History) -> np.ndarray:
     return np.asarray(2 * history.readings > np.median(history.readings))
 
 
-def _torque_noise_Nm(history: History) -> np.ndarray:
-    """(n,) the typical unit's; each cycle's own where one has UNLIKE_RATIO times as much."""
+@once
+def noise_of_usual_rows_Nm(history: History) -> np.ndarray:
+    """(n,) in rows of the usual number of readings [N·m].
+
+    That of the typical unit; each cycle's own where one has UNLIKE_RATIO times as much.
+    """
     none = np.zeros(len(history))
     if history.exact:
         return none

@@ -37,3 +37,11 @@ def test_what_is_kept_cannot_be_written_to() -> None:
     history = History.course(np.array([1.0, 2.0, 3.0]))
     with pytest.raises(ValueError, match="read-only"):
         doubled(history)[0] = 0.0
+
+
+def test_what_is_known_is_not_looked_for() -> None:
+    ASKED.clear()
+    history = History.course(np.array([1.0, 2.0, 3.0]))
+    beyond.is_known(history, 7, 1.5)
+    assert [beyond(history, limit) for limit in (1.5, 2.5)] == [7, 1]
+    assert ASKED == [2.5]
