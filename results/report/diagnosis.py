@@ -63,9 +63,10 @@ def diagnosis_document(
         *errors_held_out(diagnosis.outcome),
         *_after(diagnosis),
         *errors_at_levels(diagnosis.outcome.gains_at_levels),
-        *_figures(figures),
+        *_figures(figures[:1]),
         *_model(diagnosis),
         *_notes(diagnosis),
+        *_figures(figures[1:]),
     )
     return Document(
         title="The simulation against a measurement",

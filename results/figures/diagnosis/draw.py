@@ -83,13 +83,6 @@ def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
     sheet.add(
         "residual_simulation", lambda path: write_channels(path, shown, shown.calibrated, before)
     )
-    if parts(shown):
-        sheet.add("causes", lambda path: write_contributions(path, shown))
-    shares = shared_causes(shown)
-    if shares:
-        sheet.add("units", lambda path: write_units(path, shown, shares))
-    if gain is not None and gain.left and outcome.causes:
-        sheet.add("held_out", lambda path: write_held_out(path, gain))
     words = None
     if outcome.unexplained:
         channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
@@ -99,6 +92,13 @@ def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
     sheet.add(
         "residual_model", lambda path: write_channels(path, shown, shown.left, after, said), words
     )
+    if parts(shown):
+        sheet.add("causes", lambda path: write_contributions(path, shown))
+    shares = shared_causes(shown)
+    if shares:
+        sheet.add("units", lambda path: write_units(path, shown, shares))
+    if gain is not None and gain.left and outcome.causes:
+        sheet.add("held_out", lambda path: write_held_out(path, gain))
 
 
 def residual_words(
