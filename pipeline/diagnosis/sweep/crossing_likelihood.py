@@ -27,6 +27,9 @@ LEAST_WIDTH = 1e-4
 """Of the largest torque: a crossing without torque noise has this width, below any torque cell's digits."""
 FAR_SIDE = 5.0
 """Widths from the place, beyond which a row's side is sure to one in three million."""
+STRAIGHT_ENDS = 8.0
+"""Times the reading's noise, from which soft ends are as good as straight within it: the bend moves a row by
+half/8²/4 at most, half a percent of half the gap."""
 _nodes, _weights = np.polynomial.hermite_e.hermegauss(15)
 """Of a normal deviate: no farther apart than one of its deviations, the narrowest crossing."""
 _weights /= _weights.sum()
@@ -48,10 +51,36 @@ class Blur:
         return FAR_SIDE * (self.reading + self.ends)
 
 
-BLURS = (Blur(0.5), Blur(1.0), Blur(2.0), Blur(1.0, 1.0), Blur(1.0, 2.0), Blur(1.0, 4.0))
-"""A noise half and twice as large as estimated, and soft ends; all are as likely before the rows are seen."""
-WIDEST = (Blur(2.0), Blur(1.0, 4.0))
-"""Of these, those that see a crossing from farthest: enough to look where it lies."""
+READINGS = (0.5, 1.0, 2.0)
+"""A noise half and twice as large as estimated."""
+NARROW_ENDS, ENDS_RATIO = 4.0, 2.0
+"""Widths of soft ends that are always tried, from 1, each twice the last one."""
+SOFTEST = 0.04
+"""Of the largest torque: wider ends are not tried. Teeth that take up their load one after another have ends
+of a hundredth; what is much softer bends the curve where stiffness is measured, and is hardening."""
+FORM_DOUBT = 0.3
+"""Of half the gap, times the slope of soft ends, by which their form is unknown. Two hyperbolic tangents of
+widths √2 apart, which is as far as a width may be from one that is tried at first, differ by as much, and one
+and a straight ramp by half of it."""
+FINER = (-0.75, -0.5, -0.25, 0.25, 0.5, 0.75)
+"""Steps of the last ratio of widths, between which a width is looked for: where rows are denser on one side
+of the crossing, a wrong width there is taken for another place."""
+
+
+def blurs_of(width_share: float) -> tuple[Blur, ...]:
+    """All that are tried, for a torque noise of that share of the largest torque.
+
+    All are as likely before the rows are seen.
+    """
+    ends = [1.0]
+    while (wider := ENDS_RATIO * ends[-1]) <= max(NARROW_ENDS, SOFTEST / width_share):
+        ends.append(wider)
+    return (*map(Blur, READINGS), *(Blur(1.0, end) for end in ends))
+
+
+def finer(blur: Blur, ratio: float) -> tuple[Blur, ...]:
+    """Soft ends between those that are `ratio` times wider and narrower; none about sharp ones."""
+    return tuple(Blur(1.0, blur.ends * ratio**step) for step in FINER) if blur.ends else ()
 
 
 @dataclass(frozen=True)
@@ -91,6 +120,11 @@ class CrossingRows:
         each = np.array([self._blurred(places_Nm, b) for b in blurs])
         return np.asarray(np.logaddexp.reduce(each, axis=0) - np.log(len(blurs)))
 
+    def likeliest(self, place_Nm: float, blurs: tuple[Blur, ...]) -> Blur:
+        """Of the blurs, of the gap crossed at this place."""
+        place = np.array([place_Nm])
+        return max(blurs, key=lambda blur: float(self._blurred(place, blur)[0]))
+
     def _blurred(self, places_Nm: np.ndarray, blur: Blur) -> np.ndarray:
         """(p,) with one blur. Rows beyond its reach of every place are summed once, not place by place."""
         left, gap, half = self.left_arcsec, self.gap_arcsec, self.gap_arcsec / 2
@@ -118,6 +152,8 @@ class CrossingRows:
     ) -> np.ndarray:
         """Density of rows so far beyond the place."""
         half, beyond = gap / 2, beyond_Nm / self.width_Nm
+        if blur.ends >= STRAIGHT_ENDS * blur.reading:
+            return self._behind_softest_ends(beyond, left, half, blur)
         if blur.ends:
             return self._behind_soft_ends(beyond, left, half, blur)
         z = beyond / blur.reading
@@ -134,7 +170,7 @@ class CrossingRows:
 
         In single precision, which takes a tenth of the time and is good to 1e-6 of a density.
         """
-        in_noise = self.noise_arcsec * np.sqrt(2)
+        in_noise = self._beside_soft_ends(np.tanh(beyond / blur.ends), half) * np.sqrt(2)
         place, step, angle, nodes, weights = (
             values.astype(np.float32)
             for values in (
@@ -147,6 +183,20 @@ class CrossingRows:
         )
         off = step[..., None] * np.tanh(place[..., None] - nodes) - angle[..., None]
         return np.asarray(np.exp(-off * off) @ weights / (np.sqrt(np.pi) * in_noise))
+
+    def _behind_softest_ends(
+        self, beyond: np.ndarray, left: np.ndarray, half: np.ndarray, blur: Blur
+    ) -> np.ndarray:
+        """The same where the ends are straight within the reading's noise, which then is one of the angle."""
+        share = np.tanh(beyond / blur.ends)
+        of_torque = half * (1 - share**2) * blur.reading / blur.ends
+        std = np.hypot(self._beside_soft_ends(share, half), of_torque)
+        off = (left - half * share) / std
+        return np.asarray(np.exp(-off * off / 2) / (np.sqrt(2 * np.pi) * std))
+
+    def _beside_soft_ends(self, share: np.ndarray, half: np.ndarray) -> np.ndarray:
+        """Deviation [arcsec] of a row's angle from that `share` (−1 … 1) of half its gap."""
+        return np.asarray(np.hypot(self.noise_arcsec, FORM_DOUBT * half * (1 - share**2)))
 
     def _near(self, mean: np.ndarray, left: np.ndarray) -> np.ndarray:
         """Normal density of angles about a mean."""

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.crossing_likelihood import (
-    BLURS,
+    ENDS_RATIO,
     LEAST_WIDTH,
-    WIDEST,
     CrossingRows,
+    blurs_of,
+    finer,
 )
 
 OFFSET_REACH = 0.35
@@ -34,7 +35,8 @@ WITHIN_GAP = 0.25
 FAR_BEHIND = 4.5
 """Nats: an offset three deviations from the best one is so much less likely."""
 FINE_STEPS, ZOOMS = 161, 2
-"""Offsets tried of those that are not far behind, and how often they are chosen again, each time nearer."""
+"""Offsets tried of those that are not far behind, and how often they are chosen again, each time nearer;
+widths of soft ends too, in steps a quarter as far apart."""
 UNSEEN_STEPS = 9
 """Offsets within the torque's noise, each of which counts as none: a quarter of its reach apart."""
 
@@ -75,20 +77,26 @@ def crossing(
     if not near.any():
         return None
     width = max(torque_noise_Nm, LEAST_WIDTH * largest)
+    blurs = blurs_of(width / largest)
     rows = CrossingRows.of(torque_Nm[near], left_arcsec[near], gap[near], noise_arcsec, width)
     even = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSET_STEPS) * largest * INSIDE_SHARE
     inside = rows.torque_Nm[np.abs(rows.left_arcsec) < WITHIN_GAP * rows.gap_arcsec]
     places = np.union1d(even, np.round(inside / width) * width)
-    nats = rows.log_likelihood(places, WIDEST)
-    for _ in range(ZOOMS):
+    nats = rows.log_likelihood(places, blurs)
+    for zoom in range(1, ZOOMS + 1):
         low, high = _not_far_behind(places, nats)
-        places = np.linspace(low - width, high + width, FINE_STEPS)
-        nats = rows.log_likelihood(places, BLURS)
+        likeliest = rows.likeliest(float(places[nats.argmax()]), blurs)
+        blurs += finer(likeliest, ENDS_RATIO ** (4 / 4**zoom))
+        beyond = width * max(
+            1.0, likeliest.ends / 4**zoom
+        )  # another width of the ends, another place
+        places = np.linspace(low - beyond, high + beyond, FINE_STEPS)
+        nats = rows.log_likelihood(places, blurs)
     # an offset within the torque's noise is none
     unseen = max(UNSEEN_SIGMAS * torque_noise_Nm, even[1] - even[0]) * np.linspace(
         -1, 1, UNSEEN_STEPS
     )
-    none = rows.log_likelihood(unseen, BLURS).max()
+    none = rows.log_likelihood(unseen, blurs).max()
     weight = np.exp(nats - nats.max()) * np.gradient(places)
     mean = float(weight @ places / weight.sum())
     variance = float(weight @ (places - mean) ** 2 / weight.sum())
