@@ -48,9 +48,10 @@ def surface_of(given: Design, part: str) -> TaggedSurface:
 
 @pytest.fixture(scope="module")
 def shaft() -> tuple[TaggedSurface, TetMesh]:
-    given = design(6)
-    surface = surface_of(given, "shaft")
-    return surface, mesh_surface(surface, first_spec(given.part("shaft")))
+    part = design(6).part("shaft")
+    coarse = first_spec(part).scaled(2.0)
+    surface = surface_to_mesh(part, coarse, sector_of(part, "torsion").degrees, edge_spacing=0.1)
+    return surface, mesh_surface(surface, coarse)
 
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
