@@ -92,7 +92,9 @@ def test_longest_report_stays_within_nine_pages(tmp_path):
     assert "N" * 200 in text.replace(" ", "")
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize(
+    "name", [" ".join(NASTY), *(pytest.param(n, marks=pytest.mark.long) for n in NASTY)]
+)
 def test_names_print_as_their_letters(tmp_path, name):
     write_report(
         tmp_path / "r.pdf",
