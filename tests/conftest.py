@@ -168,6 +168,15 @@ def finished_cup(suite_folder: Path, suite_cache: Path) -> FinishedRun:
 
 
 @pytest.fixture
+def no_diagnosis_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`diagnose` in this process ends with its record and model: no charts, no reports."""
+    for drawn, nothing in (("draw_figures", ()), ("reports_of", {})):
+        monkeypatch.setattr(
+            f"flexspline.results.diagnosis.files.{drawn}", lambda *_, n=nothing, **__: n
+        )
+
+
+@pytest.fixture
 def record(request: pytest.FixtureRequest) -> Callable[..., None]:
     """`record(case, source, expected, got, unit="", digits=4)`: a row of the validation page.
 
