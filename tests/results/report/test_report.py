@@ -137,8 +137,11 @@ def test_the_sum_names_the_k_b_of_its_load_case(case, K_b):
     ("models", "flexspline"),
     [
         (("solid", "solid"), None),
-        (("axisymmetric", "axisymmetric"), "K_b, K_b,lobes come from a mesh of the meridian; this one is for "
-                                           "the pictures of stress."),
+        pytest.param(
+            ("axisymmetric", "axisymmetric"),
+            "K_b, K_b,lobes come from a mesh of the meridian; this one is for the pictures of stress.",
+            marks=pytest.mark.long,
+        ),
         (("axisymmetric", "solid"), "K_b comes from a mesh of the meridian; this one is for the pictures of "
                                     "stress and the other stiffnesses."),
     ],
