@@ -21,7 +21,7 @@ from checkout import INSTALLED
 
 # isort: split
 from cad_kernel import why_no_cad
-from finished_run import FinishedRun, finished_run
+from finished_run import FinishedDiagnosis, FinishedRun, finished_diagnosis, finished_run
 from opengl import why_no_pictures
 from shell import FEW_PAGE_FAULTS, ONE_THREAD
 from validation_page import TOPICS, Row, has_case, markdown
@@ -165,6 +165,12 @@ def suite_cache(suite_folder: Path) -> Path:
 def finished_cup(suite_folder: Path, suite_cache: Path) -> FinishedRun:
     """`flexspline run examples/xb1-40.toml`: what the suite's cache holds of this cup from then on."""
     return finished_run("xb1-40", suite_folder, suite_cache)
+
+
+@pytest.fixture(scope="session")
+def finished_sweep(suite_folder: Path, suite_cache: Path) -> FinishedDiagnosis:
+    """`flexspline diagnose` of the example's sweep with all its charts and reports."""
+    return finished_diagnosis(suite_folder, suite_cache)
 
 
 @pytest.fixture
