@@ -21,7 +21,7 @@ from checkout import INSTALLED
 
 # isort: split
 from cad_kernel import why_no_cad
-from finished_run import FinishedRun, finished_run
+from finished_run import FinishedDiagnosis, FinishedRun, finished_diagnosis, finished_run
 from opengl import why_no_pictures
 from shell import FEW_PAGE_FAULTS, ONE_THREAD
 from validation_page import TOPICS, Row, has_case, markdown
@@ -33,17 +33,18 @@ WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 SLOWEST = (
-    "test_cli", "test_specimens", "test_documents", "test_document_commands", "test_without_opengl",
-    "test_studio_work", "test_estimate_honesty", "test_layered", "test_studio_stale", "test_hidden",
-    "test_studio_process", "test_streams", "test_end_points", "test_study_command", "test_enclosed_part",
+    "test_cli", "test_specimens", "test_hidden", "test_studio_work", "test_layered", "test_studio_stale",
+    "test_documents", "test_document_commands", "test_without_opengl",
+    "test_studio_process", "test_streams", "test_study_command", "test_enclosed_part",
     "test_studio_design", "test_hidden_specimens", "test_swept", "test_legibility_diagnosis",
+    "test_estimate_honesty", "test_end_points",
     "test_studio_widths", "test_cyclic", "test_files", "test_gear_command", "test_contact_on_the_seat",
     "test_gear_inputs", "test_mesher", "test_studio_reading", "test_ahead_beside_friction",
     "test_twolevel", "test_kills", "test_model_doubt", "test_no_network", "test_diagnose_rig_files",
 )  # fmt: skip
 """Files that take twelve seconds of a processor or more, begun first so that no worker is left alone with one
-at the end. The first makes the run that others read; the second the solves that the hidden specimens read,
-which begin when it has ended."""
+at the end. The first makes the run that others read, which begin when it has ended, as waiting is a worker's
+time; the second the solves that the hidden specimens read."""
 
 OF_ONE_HELPER = ("test_estimate_honesty", "test_solid_against_axisymmetric")
 """Files that read the same solutions, kept in their process: they go to one worker. Others go by file."""
@@ -164,6 +165,21 @@ def suite_cache(suite_folder: Path) -> Path:
 def finished_cup(suite_folder: Path, suite_cache: Path) -> FinishedRun:
     """`flexspline run examples/xb1-40.toml`: what the suite's cache holds of this cup from then on."""
     return finished_run("xb1-40", suite_folder, suite_cache)
+
+
+@pytest.fixture(scope="session")
+def finished_sweep(suite_folder: Path, suite_cache: Path) -> FinishedDiagnosis:
+    """`flexspline diagnose` of the example's sweep with all its charts and reports."""
+    return finished_diagnosis(suite_folder, suite_cache)
+
+
+@pytest.fixture
+def no_diagnosis_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`diagnose` in this process ends with its record and model: no charts, no reports."""
+    for drawn, nothing in (("draw_figures", ()), ("reports_of", {})):
+        monkeypatch.setattr(
+            f"flexspline.results.diagnosis.files.{drawn}", lambda *_, n=nothing, **__: n
+        )
 
 
 @pytest.fixture

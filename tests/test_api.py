@@ -10,6 +10,7 @@ import subprocess
 import sys
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -166,9 +167,15 @@ def test_a_design_of_tables_is_that_of_the_file() -> None:
         flexspline.Design(**design.tables | {"load": {"torque_Nm": -1}})
 
 
-def test_a_model_answers_a_history_without_rows() -> None:
+@pytest.fixture(scope="module")
+def diagnosed() -> Any:
+    """Of the example's sweep."""
     design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
-    model = flexspline.diagnose(design, SWEEP, K_b=31377, K_e=43275).model
+    return flexspline.diagnose(design, SWEEP, K_b=31377, K_e=43275)
+
+
+def test_a_model_answers_a_history_without_rows(diagnosed: Any) -> None:
+    model = diagnosed.model
     assert model.angle_arcsec([], temperature_C=[]).shape == (0,)
     one = model.angle_arcsec(1.0, temperature_C=25.0)
     assert one == model.angle_arcsec([1.0], temperature_C=[25.0])
@@ -203,9 +210,10 @@ def test_numpy_s_numbers_are_numbers(value: object) -> None:
         design.changed({"shaft.keyway.width_mm": value})
 
 
-def test_a_diagnosis_is_shown_in_short_and_goes_to_another_process() -> None:
-    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
-    found = flexspline.diagnose(design, SWEEP, K_b=31312, K_e=43275)
+def test_a_diagnosis_is_shown_in_short_and_goes_to_another_process(
+    diagnosed: Any,
+) -> None:
+    design, found = flexspline.load_design(EXAMPLES / "xb1-40.toml"), diagnosed
     assert len(repr(found)) < 10_000  # a notebook prints it
     there = pickle.loads(pickle.dumps(found))
     assert there.verdict == found.verdict

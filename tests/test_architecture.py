@@ -157,6 +157,11 @@ def private() -> frozenset[str]:
     return frozenset[str]().union(*map(private_names, FILES))
 
 
+def called(node: ast.Call) -> str:
+    """The last name of what is called."""
+    return getattr(node.func, "attr", getattr(node.func, "id", ""))
+
+
 def private_uses(text: str) -> Iterator[str]:
     """Private names of the program that a test file imports, reads, or names for `monkeypatch`."""
     for tree in programs(text):
@@ -166,7 +171,7 @@ def private_uses(text: str) -> Iterator[str]:
             elif isinstance(node, ast.Attribute) and node.attr in private():
                 if not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")):
                     yield node.attr
-            elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("setattr"):
+            elif isinstance(node, ast.Call) and called(node).endswith("setattr"):
                 words = [a.value for a in node.args if isinstance(a, ast.Constant)]
                 yield from (w for w in map(str, words) if w.rpartition(".")[2] in private())
 

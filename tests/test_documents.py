@@ -148,15 +148,12 @@ def flat(found: dict, prefix: str = "") -> Iterator[str]:
             yield prefix + key
 
 
+@pytest.mark.usefixtures("no_diagnosis_drawn")  # no record has a key of them
 def test_the_contract_lists_every_key_of_an_example_s_records(
     finished_cup: FinishedRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a run, of the gear alone, of a sweep against sum and gear, and of end points."""
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
-    for drawn, nothing in (("draw_figures", ()), ("reports_of", {})):  # no record has a key of them
-        monkeypatch.setattr(
-            f"flexspline.results.diagnosis.files.{drawn}", lambda *_, n=nothing, **__: n
-        )
     K = ("--Kb", "31312", "--Ke", "43275")
     sweep, points = (
         EXAMPLES / "measured" / f"{name}.csv" for name in ("xb1-40-sweep", "size-40-end-points")

@@ -30,7 +30,9 @@ def rows_below(name: str) -> list[list[str]]:
     return [[c.strip() for c in line.strip("|").split("|")] for line in block.splitlines()[2:]]
 
 
-@pytest.mark.parametrize("ratio", ["30", pytest.param("50", marks=pytest.mark.long), ">50"])
+@pytest.mark.parametrize(
+    "ratio", ["30", *(pytest.param(r, marks=pytest.mark.long) for r in ("50", ">50"))]
+)
 def test_size_25_of_the_catalogue_is_what_the_page_says(ratio: str) -> None:
     """Every size is the same gear but for its torques: one stands for all."""
     printed = next(r for r in rows_below("rows") if r[1] == "25" and r[2] == ratio)

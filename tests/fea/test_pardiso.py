@@ -23,7 +23,9 @@ def block() -> csr_matrix:
     return csr_matrix(kron(sum(along), np.diag([1.0, 2.0, 3.0])))
 
 
-@pytest.mark.parametrize(("making", "solving"), [(1, 2), (2, 1)])
+@pytest.mark.parametrize(
+    ("making", "solving"), [(1, 2), pytest.param(2, 1, marks=pytest.mark.long)]
+)
 def test_the_number_of_threads_may_change_between_factors_and_solve(
     making: int, solving: int
 ) -> None:

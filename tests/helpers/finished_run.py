@@ -49,6 +49,42 @@ def finished_run(example: str, suite: Path, cache: Path) -> FinishedRun:
     return FinishedRun(design, out, cache, stderr, json.loads(stdout))
 
 
+@dataclass(frozen=True)
+class FinishedDiagnosis:
+    """Of `flexspline diagnose` in words. Nothing in its folder may be changed."""
+
+    folder: Path
+    """What it wrote."""
+    stdout: str
+
+
+def finished_diagnosis(suite: Path, cache: Path) -> FinishedDiagnosis:
+    """The diagnosis of the example's sweep, K_b and K_e given.
+
+    Raises
+    ------
+    AssertionError : it failed, with what it said.
+    """
+    here, design = suite / "diagnosed", EXAMPLES / "xb1-40.toml"
+    out, said = here / "out", here / "said.txt"
+    here.mkdir(exist_ok=True)
+    words = (
+        "diagnose",
+        design,
+        EXAMPLES / "measured" / "xb1-40-sweep.csv",
+        "--Kb",
+        31329,
+        "--Ke",
+        43339,
+    )
+    with one_at_a_time(here / "lock"):
+        if not said.exists():
+            done = run(*words, "--out", out, cache=cache, timeout_s=PATIENCE_S)
+            assert done.returncode == 0, done.stderr
+            said.write_text(done.stdout, encoding="utf-8")
+    return FinishedDiagnosis(out, said.read_text(encoding="utf-8"))
+
+
 @contextmanager
 def one_at_a_time(path: Path) -> Iterator[None]:
     """SQLite's lock on a file: on every system, and free again when its holder dies."""

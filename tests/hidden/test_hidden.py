@@ -32,7 +32,7 @@ def check(found: Sequence[Mark]) -> None:
 
 
 def test_demands_on_fixed_seeds() -> None:
-    check(marks(FIXED_SEED, 10))
+    check(marks(FIXED_SEED, 6))
 
 
 @pytest.mark.long

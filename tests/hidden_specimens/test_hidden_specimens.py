@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -105,14 +105,16 @@ def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:
             assert a.cause in {x for c in a.found for x in c.alternatives}
     # 1 % noise on eight stiffnesses: a tenth is the most that sizes may be off in the median
     assert np.median(relative) < 0.1
-    # 68 and 95 % in expectation; ± 12 and 7 points are two deviations of a share of 60 answers, and less
-    # than two of the 27 on fixed seeds
-    assert 0.56 <= one <= 0.90
-    assert two >= 0.88
+    # 68 and 95 % in expectation, two deviations of a share of so many answers below; 90 % and more of few
+    assert 0.68 - 2 * np.sqrt(0.68 * 0.32 / len(right)) <= one <= max(0.90, 1 - 1 / len(right))
+    assert two >= 0.95 - 2 * np.sqrt(0.95 * 0.05 / len(right))
 
 
 CUPS = Asked("xb1-40", AS_IN_THE_EXAMPLE, 3)
 """What FE says of them is in the suite's cache."""
+FEWER = replace(CUPS, each=1)
+"""Each kind of truth once, nothing wrong three times: one wrong answer is a fifth or third of them, more than
+is allowed."""
 HATS = Asked("hat-25", 3, 1, ("clean", "softer", "wall"), (f"flexspline.{KEYS['wall']}",))
 """Only the wall is looked at."""
 
@@ -120,7 +122,8 @@ HATS = Asked("hat-25", 3, 1, ("clean", "softer", "wall"), (f"flexspline.{KEYS['w
 @pytest.mark.parametrize(
     "sets",
     [
-        pytest.param([CUPS], id="cups"),
+        pytest.param([FEWER], id="cups"),
+        pytest.param([CUPS], id="more cups", marks=pytest.mark.long),
         pytest.param([CUPS, HATS], id="cups and hats", marks=pytest.mark.long),
     ],
 )

@@ -110,21 +110,22 @@ def test_a_row_of_holes_raises_the_stress_more_than_one_hole() -> None:
     assert under_test.raised(1.0, replace(six, count=1)) == pytest.approx(4.0)
 
 
+@pytest.mark.long  # without holes by default: tests/verification/test_peak_on_the_ellipse.py
 def test_the_solid_model_with_its_holes_has_the_same_peak(finished_cup: FinishedRun) -> None:
-    """1.5 %: what its mesh may be off without holes (tests/verification/test_peak_on_the_ellipse.py)."""
+    """1.5 %: what its mesh may be off without holes."""
     part = model(CUP, finished_cup.cache)
     solid = solid_ellipse(part).peak
+    assert not solid.shortfall
     assert solid.mises_MPa == pytest.approx(under_test.ellipse_peak(part).mises_MPa, rel=0.015)
 
 
 def test_a_peak_on_a_mesh_that_is_not_refined_there_says_so(
-    finished_cup: FinishedRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A mesh of fTetWild's is that of K, and has a peak that a finer one may move by a tenth.
 
     A swept one stands in for it: how it was made is what the program goes by.
     """
-    assert not solid_ellipse(model(CUP, finished_cup.cache)).peak.shortfall
     unswept = {"solver.mesher": "tetwild", "solver.tolerance_pct": 5.0}
     cup = model(CUP.changed(unswept), tmp_path)
 

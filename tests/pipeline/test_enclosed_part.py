@@ -35,7 +35,7 @@ WIDE = CUP.changed(
         "flexspline.bolt_count": 6,
         "flexspline.bolt_hole_diameter_mm": 4.4,
         "flexspline.diaphragm_thickness_mm": 1.5,
-        "solver.tolerance_pct": 1.0,
+        "solver.tolerance_pct": 2.0,
     }
 )
 """Large holes that leave 0.3 mm of the boss beside them: the two bodies are 5 % apart."""
@@ -97,9 +97,9 @@ def test_a_wide_enclosure_leaves_it_to_the_solid_model(suite_cache: Path) -> Non
     for found in (uniform, held):
         assert found.model == "solid"
         assert not found.guaranteed
-        assert found.half_width < 0.01
+        assert found.half_width < 0.02
     contact = rim_stiffness(part, "lobes_contact")
-    assert contact.half_width > 0.01
+    assert contact.half_width > 0.02
     assert contact.shortfall.words == TOO_FAR
     assert contact.lower_Nm_per_rad < held.upper_Nm_per_rad
 
@@ -111,7 +111,7 @@ def test_where_the_solid_model_fails_the_enclosure_stays(suite_cache: Path, monk
     case = replace(load_cases.CASES["lobes"], solid=fails)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
     found = rim_stiffness(model(WIDE, suite_cache), "lobes")
-    assert found.half_width > 0.01
+    assert found.half_width > 0.02
     assert TOO_FAR in found.shortfall.words
     assert "no mesh" in found.shortfall.words
 

@@ -38,7 +38,11 @@ def test_stiffness_turn_and_teeth(bearing: str, places: int) -> None:
 
 @pytest.mark.parametrize(
     ("curve", "places"),
-    [("race, 3 slices, relieved", 5), ("race, 3 slices", 5), ("plug, 3 slices", 9)],
+    [
+        ("race, 3 slices, relieved", 5),
+        ("race, 3 slices", 5),
+        pytest.param("plug, 3 slices", 9, marks=pytest.mark.long),
+    ],
 )
 def test_faces_that_are_not_loaded_evenly(curve: str, places: int) -> None:
     """Thirds of a tooth's face as springs of their own: hats over z here, thirds with sharp ends there.

@@ -138,7 +138,8 @@ def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     assert found.calibration.compliance.value == pytest.approx(by_hand, rel=0.05)
 
 
-@pytest.mark.parametrize("rows", [LAST_REVERSAL, pytest.param(len(JOINT), marks=pytest.mark.long)])
+@pytest.mark.long  # by default without a clock, which must not tell more: the test above
+@pytest.mark.parametrize("rows", [LAST_REVERSAL, len(JOINT)])
 def test_a_clock_does_not_tell_what_one_speed_cannot(tmp_path: Path, rows: int) -> None:
     """A row each 0.1 s: whatever the loop is taken for, the other may have made it."""
     found = joint(tmp_path, rows, row_s=0.1)

@@ -92,7 +92,7 @@ def test_a_mesher_that_says_nothing_readable(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(tetwild.subprocess, "run", cut)
     with pytest.raises(MesherError, match="result cannot be read"):
-        tetrahedralize(CUBE, FACES, TetwildSettings(0.5, 0.001))
+        tetrahedralize(CUBE, FACES, TetwildSettings(0.5, 0.02))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the child ends by its time limit")

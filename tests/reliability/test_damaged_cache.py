@@ -129,6 +129,7 @@ def test_random_damage(name: str, rounds: int, cache: Path, tmp_path: Path, fact
     fact(f"cache entries damaged at random, {design.name}", rounds, outcome)
 
 
+@pytest.mark.long  # two that share the work by default: tests/pipeline/test_second_process.py
 def test_two_processes_on_one_cache(tmp_path: Path, fact) -> None:
     """Both begin with an empty one; each has its own folder."""
     design = bases.plain(tmp_path)

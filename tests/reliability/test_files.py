@@ -65,6 +65,7 @@ def try_all(seeds: Iterable[int], sources: Path, folder: Path) -> list[Tried]:
     return found
 
 
+@pytest.mark.usefixtures("no_diagnosis_drawn")  # drawn too: the thousand
 def test_six_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
     """Each kind with a mutation, by turns."""
     pairs = [(kind, number) for kind in range(len(KINDS)) for number in range(len(MUTATIONS))]

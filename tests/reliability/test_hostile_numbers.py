@@ -52,7 +52,9 @@ def computed(design: Design, K: float) -> None:
     as_json(backlash_record(backlash(design, K, K)))
 
 
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(
+    "base", [pytest.param(b, marks=[pytest.mark.long] * (i > 0)) for i, b in enumerate(BASES)]
+)
 def test_every_number_of_a_design(base: str) -> None:
     tables = tomllib.loads(BASES[base])
     places = list(numeric(tables))

@@ -88,7 +88,15 @@ def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolve
     assert answer.mentions(name)
 
 
-def test_without_k_b_the_rest_is_kept_and_the_status_is_1(revolved, monkeypatch):
+@pytest.mark.parametrize(
+    ("command", "others"),
+    [
+        ("stiffness", (*LOBES, PEAK)),
+        ("backlash", ()),
+        pytest.param("run", (*LOBES, PEAK), marks=pytest.mark.long),  # both, and the pictures
+    ],
+)
+def test_without_k_b_the_rest_is_kept_and_the_status_is_1(command, others, revolved, monkeypatch):
     from flexspline.pipeline import part_stiffness
 
     solve = part_stiffness.torsional_stiffness
@@ -99,17 +107,12 @@ def test_without_k_b_the_rest_is_kept_and_the_status_is_1(revolved, monkeypatch)
         ),
     )  # fmt: skip
     name = "Flexspline stiffness, even torque on the ring (uniform)"
-    for command, others in (
-        ("stiffness", (*LOBES, PEAK)),
-        ("backlash", ()),
-        ("run", (*LOBES, PEAK)),
-    ):
-        answer = asked(command, revolved)
-        assert answer.status == 1, command
-        assert answer.mentions(name)
-        assert answer.told[-1].endswith(f"K_b was not found: {WHY}")
-        assert {"K_e_Nm_per_rad", *others} <= set(answer.record)
-        assert not {"K_b_Nm_per_rad", "K_series_Nm_per_rad", "backlash_arcsec"} & set(answer.record)
+    answer = asked(command, revolved)
+    assert answer.status == 1
+    assert answer.mentions(name)
+    assert answer.told[-1].endswith(f"K_b was not found: {WHY}")
+    assert {"K_e_Nm_per_rad", *others} <= set(answer.record)
+    assert not {"K_b_Nm_per_rad", "K_series_Nm_per_rad", "backlash_arcsec"} & set(answer.record)
 
 
 def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):

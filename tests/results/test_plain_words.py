@@ -3,14 +3,11 @@
 from pathlib import Path
 
 import pytest
-from example_files import EXAMPLES
 from hand_made_gear import content
 from page_text import strings
 from pypdf import PdfReader
-from typer.testing import CliRunner
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-from flexspline.results.cli import app
 from flexspline.results.report.write import payload
 
 RING = EquivalentRing(0.55, 0.71, 0.66, 0.69, 0.01, 1000)
@@ -35,13 +32,10 @@ def test_a_run(old, plain):
     assert plain in said
 
 
-def test_a_diagnosis(tmp_path):
-    record = EXAMPLES / "measured" / "xb1-40-sweep.csv"
-    words = ["diagnose", EXAMPLES / "xb1-40.toml", record, "--Kb", 31329, "--Ke", 43339]
-    result = CliRunner().invoke(app, [str(w) for w in (*words, "--out", tmp_path)])
-    assert result.exit_code == 0, result.stderr
-    pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "diagnosis.pdf").pages)
-    said = " ".join((result.stdout + pages).split())
+def test_a_diagnosis(finished_sweep):
+    printed = PdfReader(finished_sweep.folder / "diagnosis.pdf").pages
+    pages = " ".join(p.extract_text() for p in printed)
+    said = " ".join((finished_sweep.stdout + pages).split())
     for old in (
         "Found, and named", "worth to know", "name no cause", "friction stays, lag goes",
         "the program knows", "How sure",

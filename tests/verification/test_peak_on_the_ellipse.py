@@ -42,6 +42,7 @@ def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
     # steps of 5° leave 2²·step²/12 = 0.25 % (slope of parabolas for cos 2φ at their ends), the lattice of
     # the stress rule a place up to 0.04 walls beside the peak, half-wall edges the rest: 0.8 % seen
     assert peak.mises_MPa == pytest.approx(exact.peak.mises_MPa, rel=0.015)
+    assert not peak.shortfall
     assert peak.at_excluded_border == exact.peak.at_excluded_border
     # twice as far from the seat's edge the solid's edges are longer: twice the tolerance of the peak
     assert peak.mises_at_twice_MPa == pytest.approx(exact.peak.mises_at_twice_MPa, rel=0.03)

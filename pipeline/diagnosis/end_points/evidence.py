@@ -85,75 +85,105 @@ def readings(resolution_arcsec: float, total_arcsec: np.ndarray) -> tuple[float,
 
 def unit_evidence(deviations: UnitDeviations, terms: Sequence[EndPointRegressor]) -> UnitEvidence:
     """Evidence of a set of terms, over the grids of ρ and σ."""
-    cells = [
-        _cell(deviations, terms, rho, sigma) for rho in CORRELATIONS for sigma in deviations.readings
-    ]  # fmt: skip
-    logs = np.array([c[0] for c in cells])
+    grid = np.array([(rho, sigma) for rho in CORRELATIONS for sigma in deviations.readings])
+    cells = _cells(deviations, terms, grid[:, 0], grid[:, 1])
+    logs = cells.evidence
     weight = np.exp(logs - logsumexp(logs))
     k = len(terms)
-    means = np.array([c[2] for c in cells])
-    variances = np.array([c[3] for c in cells])
-    mean = weight @ means
-    std = np.sqrt(weight @ (variances + (means - mean) ** 2))
-    grid = [(rho, sigma) for rho in CORRELATIONS for sigma in deviations.readings]
-    own = weight @ np.array([c[4] for c in cells])
+    mean = weight @ cells.means
+    std = np.sqrt(weight @ (cells.variances + (cells.means - mean) ** 2))
     return UnitEvidence(
         tuple(terms),
         float(logsumexp(logs) - log(len(logs))),
-        max(c[1] for c in cells),
+        float(cells.likelihood.max()),
         mean[:k], std[:k],
         (float(mean[k + 1]), float(std[k + 1])),
-        own,
-        float(weight @ np.array([g[0] for g in grid])),
-        float(np.exp(weight @ np.log([g[1] for g in grid]))),
+        weight @ cells.own,
+        float(weight @ grid[:, 0]),
+        float(np.exp(weight @ np.log(grid[:, 1]))),
     )  # fmt: skip
 
 
-def _cell(
-    deviations: UnitDeviations, terms: Sequence[EndPointRegressor], rho: float, sigma: float
-) -> tuple[float, float, np.ndarray, np.ndarray, np.ndarray]:
-    """Log evidence, log likelihood at the mean, posterior means and variances, own parts.
+@dataclass(frozen=True)
+class _GridCells:
+    """Of each (ρ, σ) of the grid: log evidence, log likelihood at the mean, both (cells,); posterior means
+    and variances (cells, terms + 2); own parts (cells, units)."""
+
+    evidence: np.ndarray
+    likelihood: np.ndarray
+    means: np.ndarray
+    variances: np.ndarray
+    own: np.ndarray
+
+
+def _cells(
+    deviations: UnitDeviations,
+    terms: Sequence[EndPointRegressor],
+    rho: np.ndarray,
+    sigma: np.ndarray,
+) -> _GridCells:
+    """All cells at once.
 
     Parameters are the terms' amplitudes, Young's modulus, the gap's common part, and, for the mid
     positions, each unit's free zero.
     """
     n = len(deviations.deviation)
     total = [t for t in terms if t.channel == "total"]
-    columns = [*(t.column for t in total), 2 * deviations.torque, np.ones(n)]
-    prior = [*(t.spread for t in total), deviations.modulus_std, deviations.gap_std * rho**0.5]
+    columns = np.array([*(t.column for t in total), 2 * deviations.torque, np.ones(n)])
+    prior = np.empty((len(rho), len(columns)))
+    prior[:, :-1] = [*(t.spread for t in total), deviations.modulus_std]
+    prior[:, -1] = deviations.gap_std * rho**0.5
     own_variance = deviations.gap_std**2 * (1 - rho)
-    ev, like, mean, cov, left = _linear(
-        deviations.deviation,
-        np.column_stack(columns),
-        np.array(prior),
-        deviations,
-        own_variance,
-        sigma,
-    )
+    of_total = _linear(deviations.deviation, columns, prior, deviations, own_variance, sigma)
     middle = [t for t in terms if t.channel == "mid"]
     # a unit's zero may be anything: its prior is as wide as the mid positions are far
     anything = (10 * (np.abs(deviations.mid).max() + sigma)) ** 2
-    ev_mid, like_mid, mean_mid, cov_mid, _ = _linear(
-        deviations.mid, np.array([t.column for t in middle]).T.reshape(n, len(middle)),
-        np.array([t.spread for t in middle]), deviations, anything, sigma / 2,
+    of_mid = _linear(
+        deviations.mid, np.array([t.column for t in middle]).reshape(len(middle), n),
+        np.tile([t.spread for t in middle], (len(rho), 1)), deviations, anything, sigma / 2,
     )  # fmt: skip
-    means, variances = np.zeros(len(terms) + 2), np.zeros(len(terms) + 2)
+    means = np.zeros((len(rho), len(terms) + 2))
+    variances = np.zeros_like(means)
     it, im = 0, 0
-    sign = 0.0
+    sign = np.zeros(len(rho))
     for i, t in enumerate(terms):
         if t.channel == "total":
-            means[i], variances[i] = mean[it], cov[it, it]
+            means[:, i], variances[:, i] = of_total.mean[:, it], of_total.cov[:, it, it]
             it += 1
         else:
-            means[i], variances[i] = mean_mid[im], cov_mid[im, im]
+            means[:, i], variances[:, i] = of_mid.mean[:, im], of_mid.cov[:, im, im]
             im += 1
         if t.positive:  # half a normal prior: what of the posterior lies there, twice
-            sign += log(2) + float(log_ndtr(means[i] / max(variances[i], ABOVE_ZERO) ** 0.5))
-    means[-2:], variances[-2:] = mean[it:], np.diag(cov)[it:]
+            sign += log(2) + log_ndtr(means[:, i] / np.maximum(variances[:, i], ABOVE_ZERO) ** 0.5)
+    means[:, -2:] = of_total.mean[:, it:]
+    variances[:, -2:] = np.diagonal(of_total.cov, axis1=1, axis2=2)[:, it:]
     count = np.bincount(deviations.unit, minlength=deviations.units)
-    shrink = own_variance / (sigma**2 + own_variance * count)
-    own = shrink * np.bincount(deviations.unit, left, minlength=deviations.units)
-    return ev + ev_mid + sign, like + like_mid, means, variances, own
+    shrink = own_variance[:, None] / (sigma[:, None] ** 2 + own_variance[:, None] * count)
+    own = shrink * _unit_sums(of_total.left, deviations)
+    return _GridCells(
+        of_total.evidence + of_mid.evidence + sign, of_total.likelihood + of_mid.likelihood,
+        means, variances, own,
+    )  # fmt: skip
+
+
+def _unit_sums(rows: np.ndarray, deviations: UnitDeviations) -> np.ndarray:
+    """Sums over each unit's rows, (…, n) → (…, units)."""
+    units = deviations.units
+    flat = rows.reshape(-1, rows.shape[-1])
+    place = np.arange(len(flat))[:, None] * units + deviations.unit
+    sums = np.bincount(place.ravel(), flat.ravel(), minlength=len(flat) * units)
+    return sums.reshape(*rows.shape[:-1], units)
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """Per cell: evidence, likelihood (cells,), mean (cells, m), cov (cells, m, m), residuals (cells, n)."""
+
+    evidence: np.ndarray
+    likelihood: np.ndarray
+    mean: np.ndarray
+    cov: np.ndarray
+    left: np.ndarray
 
 
 def _linear(
@@ -161,35 +191,32 @@ def _linear(
     columns: np.ndarray,
     prior: np.ndarray,
     deviations: UnitDeviations,
-    own: float,
-    sigma: float,
-) -> tuple[float, float, np.ndarray, np.ndarray, np.ndarray]:
-    """Normal linear model with unit blocks σ²I + own·11ᵀ: evidence, likelihood, mean, cov, residual."""
+    own: np.ndarray,
+    sigma: np.ndarray,
+) -> _Linear:
+    """Normal linear models with unit blocks σ²I + own·11ᵀ: `y` (n,), `columns` (m, n), `prior` (cells, m)."""
+    cells, m = prior.shape
     count = np.bincount(deviations.unit, minlength=deviations.units)
-    pull = own / (sigma**2 + own * count)
+    noise = sigma[:, None] ** 2
+    block = noise + own[:, None] * count
+    pull = own[:, None] / block
 
     def weighted(v: np.ndarray) -> np.ndarray:
-        sums = np.column_stack(
-            [
-                np.bincount(deviations.unit, v[:, j], minlength=deviations.units)
-                for j in range(v.shape[1])
-            ]
-        )
-        return (v - (pull[:, None] * sums)[deviations.unit]) / sigma**2
+        pulled = pull[:, None, :] * _unit_sums(v, deviations)
+        return (v - pulled[..., deviations.unit]) / noise[:, None]
 
-    logdet = float(np.sum((count - 1) * 2 * log(sigma) + np.log(sigma**2 + own * count)))
-    scaled = columns * prior
-    w = weighted(np.column_stack([y, scaled]))
-    quadratic = float(y @ w[:, 0])
-    inner = scaled.T @ w[:, 1:] + np.eye(len(prior))
-    right = scaled.T @ w[:, 0]
-    solved = np.linalg.solve(inner, right) if len(prior) else right
+    logdet = np.sum((count - 1) * 2 * np.log(sigma)[:, None] + np.log(block), axis=1)
+    scaled = columns * prior[:, :, None]
+    w = weighted(np.concatenate([np.broadcast_to(y, (cells, 1, len(y))), scaled], axis=1))
+    inner = scaled @ w[:, 1:].transpose(0, 2, 1) + np.eye(m)
+    right = (scaled @ w[:, 0, :, None])[..., 0]
+    solved = np.linalg.solve(inner, right[..., None])[..., 0]
     mean = prior * solved
-    cov = np.linalg.inv(inner) * np.outer(prior, prior) if len(prior) else np.zeros((0, 0))
+    cov = np.linalg.inv(inner) * (prior[:, :, None] * prior[:, None, :])
     constant = len(y) * log(2 * pi) + logdet
-    evidence = -(quadratic - float(right @ solved) + np.linalg.slogdet(inner)[1] + constant) / 2
-    left = y - columns @ mean
-    likelihood = (
-        -(float(left @ weighted(left[:, None])[:, 0]) + constant + float(solved @ solved)) / 2
-    )
-    return float(evidence), likelihood, mean, cov, left
+    explained = np.vecdot(right, solved)
+    evidence = -(w[:, 0] @ y - explained + np.linalg.slogdet(inner)[1] + constant) / 2
+    left = y - mean @ columns
+    misfit = np.vecdot(left, weighted(left[:, None])[:, 0])
+    likelihood = -(misfit + constant + np.vecdot(solved, solved)) / 2
+    return _Linear(evidence, likelihood, mean, cov, left)

@@ -147,7 +147,7 @@ def K(model: GearModel) -> np.ndarray:
     [
         pytest.param("LAST_HARMONIC", 96, marks=pytest.mark.long),
         ("PLACES", 9),
-        ("GROOVE_SHARE", 0.15),
+        pytest.param("GROOVE_SHARE", 0.15, marks=pytest.mark.long),
         pytest.param("FACE_PLACES", {"relieved": 9}, marks=pytest.mark.long),
     ],
 )

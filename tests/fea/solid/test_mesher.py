@@ -48,9 +48,10 @@ def surface_of(given: Design, part: str) -> TaggedSurface:
 
 @pytest.fixture(scope="module")
 def shaft() -> tuple[TaggedSurface, TetMesh]:
-    given = design(6)
-    surface = surface_of(given, "shaft")
-    return surface, mesh_surface(surface, first_spec(given.part("shaft")))
+    part = design(6).part("shaft")
+    coarse = first_spec(part).scaled(2.0)
+    surface = surface_to_mesh(part, coarse, sector_of(part, "torsion").degrees, edge_spacing=0.1)
+    return surface, mesh_surface(surface, coarse)
 
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -73,11 +74,11 @@ def test_a_mesher_that_crashes_is_an_error_with_its_last_words() -> None:
 
 
 def test_a_cube_is_filled() -> None:
-    points, tets = tetrahedralize(CUBE, CUBE_FACES, TetwildSettings(0.5, 0.004))
+    points, tets = tetrahedralize(CUBE, CUBE_FACES, TetwildSettings(0.5, 0.01))
     a, b, c = (points[tets[:, i]] - points[tets[:, 0]] for i in (1, 2, 3))
     volumes = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
     assert volumes.min() > 0
-    assert volumes.sum() == pytest.approx(1, abs=0.024)  # six faces within the envelope
+    assert volumes.sum() == pytest.approx(1, abs=0.06)  # six faces within the envelope
 
 
 def test_mesh_agrees_with_the_cad(shaft) -> None:

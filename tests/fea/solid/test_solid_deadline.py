@@ -15,13 +15,13 @@ from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of
 
-SHAFT = load_design(EXAMPLES / "xb1-40.toml").part("shaft")
+SHAFT = load_design(EXAMPLES / "xb1-40.toml").part("shaft").without_holes()
 MESH_S = 25.0
 """What each mesh takes on the clock of these tests."""
 
 
-FINE = 6e-3
-"""Tolerance: the first mesh leaves ± 0.8 %."""
+FINE = 2.2e-2
+"""Tolerance: the first mesh leaves ± 3 %."""
 
 
 @cache

@@ -40,6 +40,8 @@ from flexspline.geometry.tagged import TaggedSurface, tagged_surface
 EDGE_SPACING = 0.1
 """Of points along sharp edges [mm]."""
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
+COARSER = 2.0
+"""Than a first mesh, what is held against the CAD: arcs and holes are cut by angles, whatever the edges."""
 
 
 def segments(*rows: tuple[float, float, float]) -> list[dict[str, float]]:
@@ -160,7 +162,7 @@ def swept(design: Design, part: str, finer: float = 1.0) -> TetMesh:
 def made(request: pytest.FixtureRequest) -> tuple[Design, str, TetMesh]:
     file, part, changes = PARTS[request.param]
     design = design_of(file, part, changes)
-    return design, part, swept(design, part)
+    return design, part, swept(design, part, COARSER)
 
 
 @pytest.fixture(scope="module")
@@ -245,7 +247,7 @@ def test_a_sector_on_the_axis_stands_for_the_whole(name: str) -> None:
     On a very coarse mesh: both have the same elements, so nothing of it is the mesh's.
     """
     file, part, changes = PARTS[name]
-    wedge = swept(design_of(file, part, changes), part, 3.0)
+    wedge = swept(design_of(file, part, changes), part, 6.0)
     quarter = unfolded(wedge, 90.0)
     on_axis = [np.hypot(*m.nodes[:, :2].T) == 0 for m in (wedge, quarter)]
     assert 0 < on_axis[0].sum() == on_axis[1].sum()
@@ -308,11 +310,11 @@ def test_stiffness_comes_from_above_to_the_guaranteed_one(name: str) -> None:
     exact = guaranteed(name)
     found = [
         torsion(Model.of(swept(design, part, finer), material), DRIVEN[part]).K_energy
-        for finer in (1.0, 0.3, 0.1)
+        for finer in (2.0, 0.7, 0.25)
     ]
     assert found[0] > found[1] > found[2] > exact.lower_Nm_per_rad
-    # the error is proportional to the edge length at the singular edges: 0.5 % falls to 0.05 %
-    assert found[2] == pytest.approx(exact.K_Nm_per_rad, rel=1e-3)
+    # the error goes with the edge length at the singular edges: 0.5 % on a first mesh, a quarter of it here
+    assert found[2] == pytest.approx(exact.K_Nm_per_rad, rel=2e-3)
 
 
 @pytest.mark.parametrize("name", WITHOUT_HOLES)
@@ -357,8 +359,8 @@ def test_a_keyed_shaft_lies_between_two_bodies_of_revolution(name: str) -> None:
     slot, last = design.shaft.slot, design.shaft.segment[-1]
     assert slot is not None
     material = Elastic.of(design.part(part).material)
-    # edges 1.6 times the first mesh's: K rises by 0.2 %, still within the 1 % below
-    K = torsion(Model.of(swept(design, part, 1.6), material), "grip").K_energy
+    # edges 2.5 times the first mesh's: K rises by 0.6 %, still within the 1 % below
+    K = torsion(Model.of(swept(design, part, 2.5), material), "grip").K_energy
 
     def revolved(changed: dict[str, Any]) -> Stiffness:
         other = design_of(file, part, changes | {"keyway": None} | changed)

@@ -44,7 +44,7 @@ def cup(far: float, sector: float) -> TetMesh:
 
 @pytest.fixture(scope="module")
 def quarter() -> Model:
-    return Model.of(cup(5.0, 90.0), STEEL)
+    return Model.of(cup(10.0, 90.0), STEEL)
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +112,7 @@ def test_steps_do_not_grow_with_the_mesh(monkeypatch: pytest.MonkeyPatch) -> Non
         return found
 
     monkeypatch.setattr(twolevel, "conjugate_gradients", spy)
-    for far in (3.0, 1.5):
+    for far in (5.0, 2.5):
         model = Model.of(cup(far, 30.0), STEEL)
         torsion(replace(model, solve_by="iterative"), "mesh")
     # a two-level method's rate is the elements' shape's, not their size's; the shapes differ a little

@@ -56,7 +56,10 @@ def test_records_with_effects_of_real_size_are_not_refused(number: int, tmp_path
     checked(case, mislabelled(case, NONE), tmp_path)
 
 
-@pytest.mark.parametrize("name", STRANGE)
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.long] * (n != "degrees as mrad")) for n in STRANGE]
+)
 def test_more_than_ten_times_is_no_cause(name: str, tmp_path: Path) -> None:
     fault, asked = STRANGE[name]
     record = diagnosis_record(diagnosed(CLEAN[0], mislabelled(CLEAN[0], fault), tmp_path))

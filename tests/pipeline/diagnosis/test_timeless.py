@@ -24,6 +24,8 @@ from flexspline.results.diagnosis.words import magnitude_words
 from flexspline.results.figures.diagnosis.contribution_parts import parts
 from flexspline.results.figures.diagnosis.seen import seen
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 

@@ -146,7 +146,7 @@ def test_a_bug_is_no_reason(tmp_path: Path) -> None:
         run_study(study, trial_store_of(study, tmp_path), threads, silent, broken)
 
 
-@pytest.mark.parametrize("at", [1, 4])
+@pytest.mark.parametrize("at", [1, pytest.param(4, marks=pytest.mark.long)])
 def test_what_was_stopped_goes_on_in_the_same_process(at: int, tmp_path: Path) -> None:
     """A notebook's: it lives on, and its own unfinished designs waited for it for ever."""
     study, heard = study_of(GRID), list[object]()

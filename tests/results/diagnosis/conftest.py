@@ -6,8 +6,5 @@ import pytest
 
 
 @pytest.fixture
-def nothing_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def nothing_drawn(no_diagnosis_drawn: None) -> None:
     """Neither figures nor reports, two thirds of the command's work: for tests of what it says or stores."""
-    files = "flexspline.results.diagnosis.files"
-    monkeypatch.setattr(f"{files}.draw_figures", lambda *_: ())
-    monkeypatch.setattr(f"{files}.reports_of", lambda *_, **__: {})

@@ -14,7 +14,7 @@ import pytest
 from bases import head
 from click.testing import Result
 from example_files import EXAMPLES
-from finished_run import FinishedRun
+from finished_run import FinishedDiagnosis, FinishedRun
 from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -129,16 +129,16 @@ def test_the_model_tells_where_it_comes_from(done: tuple[Path, dict]) -> None:
 
 
 def test_same_input_gives_the_same_files_and_says_it_in_words(
-    done: tuple[Path, dict], tmp_path: Path
+    done: tuple[Path, dict], finished_sweep: FinishedDiagnosis
 ) -> None:
+    """By another process."""
     folder, _ = done
-    result = flexspline("diagnose", CUP, SWEEP, *GIVEN, "--out", tmp_path)
     for path in folder.iterdir():
-        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
-    assert "Causes identified" in result.stdout
-    assert "arcsec/K" in result.stdout
-    assert "Measure next" in result.stdout
-    assert max(map(len, result.stdout.splitlines())) <= 120
+        assert (finished_sweep.folder / path.name).read_bytes() == path.read_bytes(), path.name
+    assert "Causes identified" in finished_sweep.stdout
+    assert "arcsec/K" in finished_sweep.stdout
+    assert "Measure next" in finished_sweep.stdout
+    assert max(map(len, finished_sweep.stdout.splitlines())) <= 120
 
 
 @pytest.mark.usefixtures("nothing_drawn")
@@ -269,7 +269,7 @@ NASTY = ['#read("/etc/passwd")', '"); #panic("x") //', "$x^2$ *b* `raw`", "\\u{4
 
 
 @pytest.mark.parametrize(
-    "name", [*NASTY[::2], *(pytest.param(n, marks=pytest.mark.long) for n in NASTY[1::2])]
+    "name", [NASTY[2], *(pytest.param(n, marks=pytest.mark.long) for n in (*NASTY[:2], NASTY[3]))]
 )
 def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
     """Design, file, unit and column names are data to the report and the figures."""

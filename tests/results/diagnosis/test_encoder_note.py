@@ -15,7 +15,10 @@ from flexspline.results.diagnosis.notes import notes
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 
-@pytest.mark.parametrize(("step_arcsec", "said"), [(1.5, True), (0.1, True), (2e-4, False)])
+@pytest.mark.parametrize(
+    ("step_arcsec", "said"),
+    [pytest.param(1.5, True, marks=pytest.mark.long), (0.1, True), (2e-4, False)],
+)
 def test_a_record_of_no_noise(step_arcsec: float, said: bool, tmp_path: Path) -> None:
     torque = np.tile(4 * np.sin(np.linspace(0, 2 * np.pi, 240, endpoint=False)), 3)
     twist = 15.3 * torque + 11.0 * np.sign(torque)

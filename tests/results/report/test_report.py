@@ -92,7 +92,9 @@ def test_longest_report_stays_within_nine_pages(tmp_path):
     assert "N" * 200 in text.replace(" ", "")
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize(
+    "name", [" ".join(NASTY), *(pytest.param(n, marks=pytest.mark.long) for n in NASTY)]
+)
 def test_names_print_as_their_letters(tmp_path, name):
     write_report(
         tmp_path / "r.pdf",
@@ -135,8 +137,11 @@ def test_the_sum_names_the_k_b_of_its_load_case(case, K_b):
     ("models", "flexspline"),
     [
         (("solid", "solid"), None),
-        (("axisymmetric", "axisymmetric"), "K_b, K_b,lobes come from a mesh of the meridian; this one is for "
-                                           "the pictures of stress."),
+        pytest.param(
+            ("axisymmetric", "axisymmetric"),
+            "K_b, K_b,lobes come from a mesh of the meridian; this one is for the pictures of stress.",
+            marks=pytest.mark.long,
+        ),
         (("axisymmetric", "solid"), "K_b comes from a mesh of the meridian; this one is for the pictures of "
                                     "stress and the other stiffnesses."),
     ],

@@ -62,7 +62,9 @@ def test_pdf_and_page_say_the_payload(tmp_path):
         assert letters(symbol.replace("_", "")) in shown, symbol
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize(
+    "name", [" ".join(NASTY), *(pytest.param(n, marks=pytest.mark.long) for n in NASTY)]
+)
 def test_names_print_as_their_letters(name, tmp_path):
     plain = content(
         pictures=blank_pictures(tmp_path), warnings=("x",), extended=ExtendedSum("x", 90.0)

@@ -65,6 +65,7 @@ def test_figures_and_picture_move_while_a_slider_does(page: Page) -> None:
 
 
 def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> None:
+    page.set("solver.tolerance_pct", "5")  # both solve alike, and sooner
     page.set(WALL, "0.43")
     page.set("material.flexspline.youngs_modulus_GPa", "201.5")
     page.complete()

@@ -68,7 +68,7 @@ def test_a_worker_that_ended_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
     assert after == before
 
 
-@pytest.mark.parametrize("kills", [1, 2])
+@pytest.mark.parametrize("kills", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_a_question_amid_which_the_worker_was_killed_is_asked_once_more(kills: int) -> None:
     async def run() -> list[Any]:
         worker = Worker("tested")

@@ -174,10 +174,10 @@ def test_a_wrong_study_leaves_nothing(
     assert not out.exists()
 
 
-def slopes_said(folder: Path) -> list[dict]:
-    """What `sensitivity` of the example prints and stores."""
+def slopes_said(folder: Path, design: Path = DESIGN) -> list[dict]:
+    """What `sensitivity` of a design prints and stores."""
     done = CliRunner().invoke(
-        app, ["sensitivity", str(DESIGN), "--out", str(folder), "--json"]
+        app, ["sensitivity", str(design), "--out", str(folder), "--json"]
     )  # fmt: skip
     assert done.exit_code == 0
     said = json.loads(done.stdout)
@@ -200,7 +200,8 @@ def test_sensitivity_prints_its_table_as_json(
         lambda part: {k: v for k, v in every(part).items() if k in keys},
     )
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path / "cache"))
-    assert {s["key"] for s in slopes_said(tmp_path)} == keys
+    written(tmp_path)
+    assert {s["key"] for s in slopes_said(tmp_path, next(tmp_path.glob("*gear.toml")))} == keys
 
 
 @pytest.mark.long

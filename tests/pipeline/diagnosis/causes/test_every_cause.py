@@ -126,11 +126,15 @@ def test_no_shapes_without_the_channel(cause: Cause, channel: str) -> None:
 @each_cause
 def test_every_shape_may_be_read_back(cause: Cause) -> None:
     """The check of model files refuses nothing that a cause tries, on records of many kinds."""
+    known = set()
     for history in (*OTHERS.values(), sweep(cycles=9), sweep(rows=200, hold=50)):
         tried = cause.shapes(FitContext(PREDICTION, history))
-        together = cause.columns_of_all(tried, OTHERS["coarse"]) if tried else []
+        together = cause.columns_of_all(tried, OTHERS["one row"]) if tried else []
         for shape, columns in zip(tried, together, strict=True):
-            assert fault_of(cause, shape, columns.shape[1]) is None
+            same = (*sorted(shape.items()), columns.shape[1])
+            if same not in known:  # by a record before
+                assert fault_of(cause, shape, columns.shape[1]) is None
+            known.add(same)
     k = cause.columns(shapes(cause)[0], RIG.history).shape[1]
     assert fault_of(cause, {**shapes(cause)[0], "colour": 1.0}, k) is not None
     assert fault_of(cause, shapes(cause)[0], k + 1) is not None

@@ -50,9 +50,11 @@ ONE_RATE, THREE_RATES = (180.0,), (180.0, 540.0, 54.0)
 @pytest.mark.parametrize(
     ("rows_per_cycle", "seconds"),
     [
-        (100, ONE_RATE),
         (100, THREE_RATES),
-        *(pytest.param(300, s, marks=pytest.mark.long) for s in (ONE_RATE, THREE_RATES)),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in ((100, ONE_RATE), (300, ONE_RATE), (300, THREE_RATES))
+        ),
     ],
 )
 def test_a_square_loop_is_friction(

@@ -62,7 +62,8 @@ def test_lags_that_cancel_each_other_leave_the_size_less_sure(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "constants_s", [(600.0,), pytest.param((1500.0,), marks=pytest.mark.long), (400.0, 300.0)]
+    "constants_s",
+    [*(pytest.param((s,), marks=pytest.mark.long) for s in (600.0, 1500.0)), (400.0, 300.0)],
 )
 def test_a_gear_that_swings_behind_the_air_from_before_the_record_on(
     constants_s: tuple[float, ...], tmp_path: Path

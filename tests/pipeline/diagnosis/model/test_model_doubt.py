@@ -244,7 +244,7 @@ def test_small_loops_are_said_with_the_smallest_of_file_and_record() -> None:
     )
 
 
-@pytest.mark.parametrize("rows", [1_000, 10_000])
+@pytest.mark.parametrize("rows", [1_000, pytest.param(10_000, marks=pytest.mark.long)])
 def test_a_reading_of_a_long_record_is_as_noisy_as_one_of_a_short_one(rows: int) -> None:
     """Rows beyond 6000 are averaged; single ones are predicted: 0.6 arcsec, the torque's noise among it."""
     history = sweep(cycles=3, rows=rows, hold=0)

@@ -67,6 +67,14 @@ def diagnosed(bench, K, **how):
     )
 
 
+def looked_at(monkeypatch: pytest.MonkeyPatch, module: str, keys: set[str]) -> None:
+    """No other dimensions are solved for there."""
+    monkeypatch.setattr(
+        f"flexspline.pipeline.diagnosis.specimens.{module}.lengths",
+        lambda part: {k: v for k, v in lengths(part).items() if k in keys},
+    )
+
+
 def noisy(C: np.ndarray, seed: int) -> np.ndarray:
     return (1 + 0.01 * np.random.default_rng(seed).standard_normal(len(C))) / C
 
@@ -195,7 +203,11 @@ def test_a_size_that_is_not_known_is_a_suspicion(bench, fe, monkeypatch) -> None
     assert "is only a suspicion" in said
 
 
-def test_lobes_and_a_joint_alike_are_ambiguous_and_the_next_specimen_is_computed(bench, fe) -> None:
+def test_lobes_and_a_joint_alike_are_ambiguous_and_the_next_specimen_is_computed(
+    bench, fe, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of three dimensions, each looked at smaller and larger."""
+    looked_at(monkeypatch, "next_measurement", {LENGTH, WALL, "flexspline.ring_width_mm"})
     outcome, _ = diagnosed(bench, noisy(fe.flexspline * (1 + fe.lobes_share), 3))
     assert outcome.verdict == "ambiguous"
     assert outcome.causes[0].id == "load_zone"
@@ -245,7 +257,8 @@ def test_two_specimens_are_too_few(bench, fe) -> None:
     assert analysis is None
 
 
-def test_missing_part_is_decided_and_said(bench, fe) -> None:
+def test_missing_part_is_decided_and_said(bench, fe, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at(monkeypatch, "sensitivity", {WALL})
     _, alone = diagnosed(bench, 1 / fe.flexspline, part=None)
     assert set(alone.part) == {"flexspline"}
     series = 1 / (fe.flexspline + 1 / bench.K_e)
@@ -272,7 +285,7 @@ def test_relative_sensitivity_holds_with_bolt_holes(tmp_path) -> None:
     )
 
 
-def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
+def test_shaft_has_its_own_keys_and_material(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     tables = read_toml(EXAMPLE)
     tables["material"]["shaft"] = {
         "name": "42CrMo4",
@@ -283,6 +296,7 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
     context = AnalysisContext(design, Cache(tmp_path), Progress())
     bench = Bench(context, 3e4, 4.3e4, False)
     key = "shaft.segment[1].outer_diameter_mm"
+    looked_at(monkeypatch, "sensitivity", {key, "shaft.segment[0].outer_diameter_mm"})
     values = np.array([15.0, 17, 20])  # no fewer are diagnosed
     drawn = [
         with_values(design, {key: float(v), "shaft.segment[0].outer_diameter_mm": 22.0})

@@ -35,8 +35,8 @@ def test_the_friction_ahead_is_found_beside_slipping_springs(
 ) -> None:
     """Four springs that slip one after another behind the gap bend the loop as friction ahead does."""
     up = np.concatenate([np.linspace(0, 1, 50), np.linspace(1, -1, 100), np.linspace(-1, 0, 50)])
-    torque = np.concatenate([a * up for a in (2.0, 1.0, 1.5, 2.0, 1.0, 1.5, 2.0, 2.0)])
-    cycle = np.repeat(np.arange(1, 9), len(up))
+    torque = np.concatenate([a * up for a in (2.0, 1.0, 1.5, 2.0)])
+    cycle = np.repeat(np.arange(1, 5), len(up))
     left = torque - play(torque, ahead)
     springs = sum(play(torque, w) / w for w in (0.1, 0.25, 0.45, 0.7)) / 4
     angle = COMPLIANCE * left + GAP / 2 * np.sign(left) - beside * springs
@@ -57,9 +57,9 @@ def test_the_friction_ahead_is_found_beside_a_lag(tmp_path: Path) -> None:
     The teeth's twist follows their torque by dθ/dt = (θ∞ − θ)/τ, in steps of a fiftieth of a row.
     """
     ahead, lag_s = 0.4, 6.0
-    turn = np.concatenate([np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (120, 240) * 3])
+    turn = np.concatenate([np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (120, 240) * 2])
     torque = 2.5 * np.sin(turn)
-    cycle = np.repeat(np.arange(1, 7), (120, 240) * 3)
+    cycle = np.repeat(np.arange(1, 5), (120, 240) * 2)
     fine = np.interp(np.arange(0, len(torque) - 1 + 1e-9, 0.02), np.arange(len(torque)), torque)
     left = fine - play(fine, ahead)
     twist, state = np.empty(len(fine)), 0.0

@@ -109,8 +109,15 @@ CASES = {
 }
 
 
+OFTEN_LIKE = ("logarithmic, reversed", "one relaxation, unloaded")
+
+
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long)])
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    # of either law and either programme one
+    [pytest.param(c, marks=[pytest.mark.long] * (c in OFTEN_LIKE)) for c in CASES],
+)
 def test_creep_is_named_and_nothing_else(name: str, seed: int, tmp_path: Path) -> None:
     kernel, back = CASES[name]
     found = diagnosed(seed, kernel, back, tmp_path)

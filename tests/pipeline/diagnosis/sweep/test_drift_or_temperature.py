@@ -16,6 +16,8 @@ from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.words import cause_title, sure_words
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 ROWS, PER_CYCLE = 720, 120
 PER_KELVIN, PER_RECORD = 1.5, 18.0
 """arcsec/K, and arcsec in the whole record: alike where it warms up by 12 K."""

@@ -12,6 +12,8 @@ from example_files import EXAMPLES
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 K_B, K_E = 31_300.0, 44_000.0
 
 

@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
 from flexspline.results.diagnosis.words import magnitude_words
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 FRICTION = known_causes()["friction_hysteresis"]
 HISTORY = sweep(cycles=3, rows=160, hold=0)
 SHAPE = shape_of("friction_hysteresis", HISTORY, loaded=GROWING, spread=0)

@@ -12,6 +12,8 @@ from read_sweep import as_read
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.results.diagnosis.advice import why
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 NOISE = 0.5  # arcsec
 GEAR = replace(sweep(cycles=5, rows=240, hold=0), temperature_C=None, input_angle_deg=None)
 MOVED_Nm = 0.04 * LARGEST

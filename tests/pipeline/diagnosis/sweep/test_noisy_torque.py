@@ -48,7 +48,7 @@ def diagnosed(
 @pytest.mark.parametrize(
     ("programme", "rows"),
     [
-        ("triangle", 6000),
+        pytest.param("triangle", 6000, marks=pytest.mark.long),
         pytest.param("sine", 6000, marks=pytest.mark.long),
         ("rests at zero", 20_000),
         pytest.param("triangle", 36_000, marks=pytest.mark.long),

@@ -18,6 +18,8 @@ from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, plans
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.splits import rate_range
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 PLAIN = ExtendedModel(11.0, 70.0, {"": 0.0}, {}, {})
 WARM = replace(
     PLAIN, elements={"thermal_clearance": (Element(shape_of("thermal_clearance"), (-0.4,)),)}

@@ -78,12 +78,12 @@ def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
     best = search.run(most=2)
     named = [i for i, t in enumerate(now.terms) if t.cause is not None]
     pairs = (search.candidate((i, j)) for i in named for j in named if i < j)
-    allowed = (
-        c for c in pairs
+    better = (
+        c for c in pairs if c.score > best.score + 1e-6
         if all((a >= 0).all() or not now.terms[i].positive
                for i, a in zip(c.terms, fit_regressors(now, c.terms).posterior.amplitudes(now), strict=True))
     )  # fmt: skip
-    assert best.score >= max(c.score for c in allowed) - 1e-6
+    assert list(better) == []
 
 
 def test_tuning_finds_the_knee() -> None:
@@ -113,7 +113,7 @@ def test_p_values_are_even_where_nothing_is_left() -> None:
     history = swept(cycles=4)
     rng = np.random.default_rng(6)
     found: list[float] = []
-    for _ in range(60):
+    for _ in range(40):
         now = raced(history, rng.normal(0, SIGMA, len(history)))
         prepared = PreparedSweep(
             _sweep(history), PREDICTION, now.columns.rig, now.columns, now.target, now.kept,
@@ -122,8 +122,8 @@ def test_p_values_are_even_where_nothing_is_left() -> None:
         tests = channel_tests(prepared, fit_regressors(now, ()))
         found += [t.p_value for t in tests if t.channel in ("torque_Nm", "temperature_C")]
     share = np.mean(np.array(found) < 0.1)
-    # 120 values, half of them nearly independent: 0.1 ± 3·√(0.09/60)
-    assert 0.0 < share < 0.22
+    # 80 values, half of them nearly independent: 0.1 ± 3·√(0.09/40)
+    assert 0.0 < share < 0.24
 
 
 def test_crossing_finds_an_offset_and_none() -> None:

@@ -21,11 +21,11 @@ DESIGN = load_design(EXAMPLES / "xb1-40.toml")
     ("seed", "number"),
     [
         # creep of 4.4 ± 0.3 %/decade had ± 2.4 from springs that hardening was said to hide
-        (3000001, 97),
+        pytest.param(3000001, 97, marks=pytest.mark.long),
         # a zero of each cycle's own stood for a position error, a drift and an asymmetry
         (12001, 12),
         # friction and a gap that follows the temperature were taken for slow noise
-        (12001, 55),
+        pytest.param(12001, 55, marks=pytest.mark.long),
         # a sine of 32 rows at uneven times: its bends were torque noise, which hid an offset of 7 %
         pytest.param(12001, 19, marks=pytest.mark.long),
         # a stiffness of three positions left the compliance open, and friction was said to be a spring

@@ -80,10 +80,10 @@ def test_the_deviation_is_that_of_scipy_s_nonlinear_fit() -> None:
 
 
 def test_sizes_scatter_by_the_deviation() -> None:
-    """Of 100 records that differ by noise alone; their scatter is known to 7 %, two of which are allowed."""
-    fits = [fitted(measured(100 + k)) for k in range(100)]
+    """Of 50 records that differ by noise alone; their scatter is known to 10 %, two of which are allowed."""
+    fits = [fitted(measured(100 + k)) for k in range(50)]
     scatter = np.std([f.magnitudes()[DRIFT] for f in fits])
-    assert np.mean([stated(f) for f in fits]) == pytest.approx(scatter, rel=0.14)
+    assert np.mean([stated(f) for f in fits]) == pytest.approx(scatter, rel=0.2)
 
 
 def test_a_shape_without_parameters_adds_nothing() -> None:

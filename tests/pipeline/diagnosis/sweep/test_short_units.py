@@ -11,6 +11,8 @@ from example_files import EXAMPLES
 
 import flexspline
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 
 

@@ -20,6 +20,8 @@ from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import run_race
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 HELD = replace(sweep(cycles=8, rows=100, hold=25), temperature_C=None, input_angle_deg=None)
 """Sixteen holds of 25 rows, ramps of 25 rows from zero to 2 N·m."""
 NOISE, TOOTH = 0.4, 4.0

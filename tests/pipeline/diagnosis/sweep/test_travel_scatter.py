@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import run_race
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
 
+pytestmark = pytest.mark.usefixtures("causes_only")
+
 ROWS, CYCLES = 150, 12
 NOISE = 0.35
 """Deviation of a reading [arcsec]."""

@@ -17,8 +17,9 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 
-FOREIGN = ("unit_gain", "slow_wave")
+FOREIGN = ("unit_gain",)
 ALIKE = (
+    "slow_wave",
     "position_step",
     "leading_output",
     "zero_with_temperature",

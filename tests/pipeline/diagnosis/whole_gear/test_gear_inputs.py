@@ -46,9 +46,9 @@ def chain() -> Chain:
 def diagnosed(
     chain: Chain, of: Chain, path: Path, noise: float = 0.4, more: Twist = np.zeros_like
 ) -> Diagnosis:
-    """Of four cycles of another gear `of`, with friction, noise [arcsec] and one more twist."""
+    """Of three cycles of another gear `of`, with friction, noise [arcsec] and one more twist."""
     share = np.concatenate([np.linspace(0, 1, 60), np.linspace(1, -1, 120), np.linspace(-1, 0, 60)])
-    torque = LARGEST_Nm * np.tile(share, 4)
+    torque = LARGEST_Nm * np.tile(share, 3)
     grid = LARGEST_Nm * np.linspace(0.001, 1, 60)
     curve = of.angles(grid.tolist()) * ARCSEC_PER_RAD
     angle = np.sign(torque) * np.interp(np.abs(torque), grid, curve) + more(torque)
