@@ -15,7 +15,8 @@
 | once more, where a lag beside friction follows no rate | `rate_blind.py` |
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
-| magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
+| magnitudes, their deviation, probabilities | `named_causes.py`, `magnitudes.py` |
+| what one unit alone shows | `unit_amplitudes.py`, `own_units.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | test it for what comes back in every cycle | `repeated_misfit.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |

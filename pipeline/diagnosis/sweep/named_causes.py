@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
+from flexspline.pipeline.diagnosis.sweep.own_units import size_in_units
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
@@ -56,10 +57,14 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
+        own = explained.shares[c].own if c in explained.shares else ()
+        there = size_in_units(explained, c, own) if own else None
+        if there is not None:
+            magnitude[c], std[c] = there
         found.append(NamedCause(
             c, beside_unweighed(chance, unweighed), tuple(dict.fromkeys(rivals)),
             magnitude[c], std[c], known_causes()[c].unit, nats, identified.rms[c],
-            _own_units(explained, c), _ahead_Nm(explained, c),
+            tuple(explained.prepared.sweep.units[u] for u in own), _ahead_Nm(explained, c),
             identified.fit.widest_loop_arcsec() if c == FRICTION else None,
             c == DRIFT and may_follow_temperature(identified),
         ))  # fmt: skip
@@ -122,12 +127,6 @@ def _std_ahead_arcsec(explained: ExplainedSweep) -> float:
     beside = FRICTION in explained.identified.best.named(fit.evidence)
     of_law = LAW_UNSURE * _ahead_Nm(explained, FRICTION)
     return 2 * fit.measured_rig().compliance * hypot(0.0 if beside else ahead.torque_std_Nm, of_law)
-
-
-def _own_units(explained: ExplainedSweep, cause: str) -> tuple[str, ...]:
-    """Names of the units that alone show a cause."""
-    share = explained.shares.get(cause)
-    return tuple(explained.prepared.sweep.units[u] for u in share.own) if share else ()
 
 
 def _ahead_Nm(explained: ExplainedSweep, cause: str) -> float:

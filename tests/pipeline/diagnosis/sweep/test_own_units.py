@@ -1,0 +1,71 @@
+"""Records of several units, of which one shows an effect and the others do not: its size is that unit's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
+from histories import sweep as swept
+
+import flexspline
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.own_units import of_units
+
+pytestmark = pytest.mark.usefixtures("causes_only")
+
+DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+WITH = "b"
+
+
+def friction(torque: np.ndarray, threshold: float) -> np.ndarray:
+    """State of one elastic-plastic element, in N·m."""
+    state = np.zeros(len(torque))
+    for i in range(1, len(torque)):
+        state[i] = np.clip(state[i - 1] + torque[i] - torque[i - 1], -threshold, threshold)
+    return state
+
+
+@pytest.mark.parametrize("effect", ["friction_hysteresis", "thermal_clearance"])
+def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path) -> None:
+    rng = np.random.default_rng(4)
+    torque = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
+    warm = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
+    lines = ["unit,time_s,cycle,torque_Nm,temperature_C,angle_arcsec"]
+    for unit in "abc":
+        gap = 72.0 - 0.6 * (warm - 20) * (unit == WITH and effect == "thermal_clearance")
+        angle = 11.35 * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.3, 900)
+        if unit == WITH and effect == "friction_hysteresis":
+            angle -= 5.0 / 0.8 * friction(torque, 0.8)
+        lines += [
+            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},{warm[i]:.2f},{angle[i]:.3f}"
+            for i in range(900)
+        ]
+    path = tmp_path / "m.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    outcome = diagnose_file(DESIGN, path, 31312, 43275).outcome
+    (cause,) = outcome.causes
+    assert cause.id == effect
+    assert cause.own_units == (WITH,)
+    # full width of the loop at T = 0, and arcsec per K; a mean over the units is a third of it
+    true = {"friction_hysteresis": 10.0, "thermal_clearance": -0.6}[effect]
+    assert abs(cause.magnitude - true) < 3 * cause.magnitude_std
+    assert cause.magnitude_std < abs(true) / 20
+
+
+def test_the_rows_of_some_units_are_a_record_of_their_own() -> None:
+    history = swept(cycles=2, units=4)
+    rows = np.arange(len(history))
+    record = Sweep(
+        Path("m.csv"), history, rows.astype(float), ("a", "b", "c", "d"),
+        ((1.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0, 8.0)), rows + 2, True,
+    )  # fmt: skip
+    some = of_units(record, (3, 1))
+    assert some.units == ("b", "d")
+    assert some.cycles == ((3.0, 4.0), (7.0, 8.0))
+    taken = np.isin(history.unit, (1, 3))
+    assert np.array_equal(some.angle_arcsec, rows[taken])
+    assert np.array_equal(some.line, rows[taken] + 2)
+    assert np.array_equal(some.own_cycle, record.own_cycle[taken])
