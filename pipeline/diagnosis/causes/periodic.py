@@ -10,8 +10,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
-HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
-"""Per turn, and which come together: eccentricity, the two lobes, and their multiples."""
+USUAL = (1, 2, 4)
+"""Per turn: eccentricity, the two lobes, and their multiple."""
+HARMONICS = ((1,), (2,), (4,), (3,), (5,), (6,), (1, 2), (2, 4), USUAL)
+"""Which come together; three, five and six by themselves, of screws and of a seat that is not round."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
@@ -48,7 +50,7 @@ def harmonic_shapes(rig: FitContext) -> list[Shape]:
     def varies(n: int) -> bool:
         return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > VARIES)
 
-    seen = {n for n in (1, 2, 4) if len(places) == 1 or varies(n)}
+    seen = {n for n in set().union(*HARMONICS) if len(places) == 1 or varies(n)}
     return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)]
 
 

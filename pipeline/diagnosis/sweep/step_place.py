@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     steadied,
     stops,
 )
-from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmonic
+from flexspline.pipeline.diagnosis.causes.periodic import KEYS, USUAL, harmonic
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
@@ -91,7 +91,7 @@ def stiffness_of_positions(history: History) -> np.ndarray:
     """
     if history.input_angle_deg is None:
         return np.empty((len(history), 0))
-    shape = dict(zip(KEYS, map(float, HARMONICS[-1]), strict=True))
+    shape = dict(zip(KEYS, map(float, USUAL), strict=True))
     largest = history.largest_Nm
     return harmonic(shape, history) * (history.torque_Nm / largest)[:, None]
 
