@@ -43,10 +43,17 @@ FormKind = Literal[
 
 @dataclass(frozen=True)
 class UnnamedForm:
-    """Structure over a channel; `number`: of the unit or specimen that alone has it, from 1; 0: of none."""
+    """Structure over a channel.
+
+    Attributes
+    ----------
+    number : of the unit or specimen that alone has it, from 1; 0: of none. name : that unit's, where the file
+        names it.
+    """
 
     kind: FormKind
     number: int = 0
+    name: str = ""
 
 
 @dataclass(frozen=True)

@@ -198,7 +198,8 @@ def _unit_notes(explained: ExplainedSweep) -> list[str]:
             continue
         own = zip(names, shares.share, shares.share_std, strict=True)
         each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
-        found.append(f"{title}: differs between units; shares of the common effect: {each}")
+        common = f"shares of the common effect, which the extended model has: {each}"
+        found.append(f"{title}: differs between units; {common}")
     return found
 
 

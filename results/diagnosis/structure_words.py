@@ -138,7 +138,7 @@ def _form(form: UnnamedForm, channel: str) -> str:
     said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
     if not form.number:
         return said
-    return f"{said} of unit {form.number}" + "'s own" * (channel == "unit")
+    return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")
 
 
 def _backward(loop: BackwardLoop) -> str:

@@ -67,7 +67,9 @@ def judged(explained: ExplainedSweep, causes: Sequence[NamedCause], left: LeftOv
     )
     return decided(
         tuple(causes),
-        unexplained_of(identified, left.tests, left.jumps, left.again, told),
+        unexplained_of(
+            identified, left.tests, left.jumps, left.again, told, explained.prepared.sweep.units
+        ),
         named_rms=named_rms,
         unnamed_rms=max(unnamed_rms, unnamed_share(identified, told) * named_rms),
         structure=any(t.p_value < UNKNOWN_P_VALUE for t in left.tests),

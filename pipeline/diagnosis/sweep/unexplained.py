@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from math import hypot
 
 from flexspline.pipeline.diagnosis.outcome import Unexplained
@@ -33,10 +34,11 @@ def unexplained_of(
     jumps: Jumps | None = None,
     again: ChannelTest | None = None,
     told: Collection[str] = (),
+    units: Sequence[str] = (),
 ) -> tuple[Unexplained, ...]:
     """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
 
-    `told` : causes that are said to be possible, as found or as rivals.
+    `told` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
     """
     found = []
     regressors = [identified.search.evidence.terms[i] for i in identified.best.terms]
@@ -44,7 +46,8 @@ def unexplained_of(
         rms = identified.rms[owner]
         if owner.startswith("?"):
             forms = dict.fromkeys(r.form for r in regressors if r.owner == owner and r.form)
-            found.append(Unexplained(owner[1:], rms, NUISANCE_P, tuple(forms)))
+            named = tuple(_with_name(form, units) for form in forms)
+            found.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
         else:
             found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
     if jumps is not None:
@@ -56,3 +59,8 @@ def unexplained_of(
         if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:
             found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
     return tuple(found)
+
+
+def _with_name(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:
+    """A form that one unit alone has, with that unit's name."""
+    return replace(form, name=units[form.number - 1]) if form.number and units else form

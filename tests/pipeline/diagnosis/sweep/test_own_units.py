@@ -13,11 +13,13 @@ from histories import sweep as swept
 import flexspline
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.own_units import of_units
+from flexspline.results.diagnosis.structure_words import structure_words
 
 pytestmark = pytest.mark.usefixtures("causes_only")
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 WITH = "b"
+HEAD = "unit,time_s,cycle,torque_Nm,temperature_C,angle_arcsec"
 
 
 def friction(torque: np.ndarray, threshold: float) -> np.ndarray:
@@ -33,7 +35,7 @@ def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path)
     rng = np.random.default_rng(4)
     torque = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
     warm = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
-    lines = ["unit,time_s,cycle,torque_Nm,temperature_C,angle_arcsec"]
+    lines = [HEAD]
     for unit in "abc":
         gap = 72.0 - 0.6 * (warm - 20) * (unit == WITH and effect == "thermal_clearance")
         angle = 11.35 * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.3, 900)
@@ -53,6 +55,26 @@ def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path)
     true = {"friction_hysteresis": 10.0, "thermal_clearance": -0.6}[effect]
     assert abs(cause.magnitude - true) < 3 * cause.magnitude_std
     assert cause.magnitude_std < abs(true) / 20
+
+
+def test_a_unit_is_called_by_the_name_that_the_file_gives_it(tmp_path: Path) -> None:
+    """A gear that is a fifth softer than the others has no cause's name."""
+    rng = np.random.default_rng(5)
+    torque = 2.0 * np.interp(np.arange(600) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
+    lines = [HEAD]
+    for unit, compliance in (("left", 11.35), ("right", 11.35), ("spare", 13.6)):
+        angle = compliance * torque + 36 * np.sign(torque) + rng.normal(0, 0.3, 600)
+        lines += [
+            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},20.0,{angle[i]:.3f}"
+            for i in range(600)
+        ]
+    path = tmp_path / "m.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    outcome = diagnose_file(DESIGN, path, 31312, 43275).outcome
+    assert outcome.verdict == "unknown"
+    (left,) = outcome.unexplained
+    assert left.channel == "unit"
+    assert "of unit spare" in structure_words(left)
 
 
 def test_the_rows_of_some_units_are_a_record_of_their_own() -> None:
