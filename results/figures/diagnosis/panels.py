@@ -25,6 +25,9 @@ WIDTH = 8.0
 """Inches, of all figures of a diagnosis."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.8, 0.95, 0.62, 0.72
 """Inches: height of a panel; above all, below all, and between rows of panels."""
+MOST_REACH = 4.0
+"""Times what 19 of 20 rows reach, at which a panel ends: a few rows far off, which stand at its edge, would
+flatten all the others."""
 BINS = 14
 """Of a mean line over a panel of 3.2 inches: a quarter of an inch each."""
 FEWEST_OF_MEAN = 4
@@ -187,5 +190,5 @@ def _sizes(gaps: np.ndarray, count: int) -> np.ndarray:
 
 
 def _reach(shown: SweepPictureData, left: np.ndarray) -> float:
-    size = float(np.quantile(np.abs(left[shown.kept]), 0.998))
-    return 1.15 * max(size, 3 * shown.noise_arcsec)
+    most, all_but_few = np.quantile(np.abs(left[shown.kept]), [0.95, 0.998])
+    return 1.15 * float(max(min(all_but_few, MOST_REACH * most), 3 * shown.noise_arcsec))
