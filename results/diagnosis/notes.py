@@ -198,8 +198,8 @@ def _unit_notes(explained: ExplainedSweep) -> list[str]:
             continue
         own = zip(names, shares.share, shares.share_std, strict=True)
         each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
-        common = f"shares of the common effect, which the extended model has: {each}"
-        found.append(f"{title}: differs between units; {common}")
+        mean = "differs between units; the extended model gives each of them the mean"
+        found.append(f"{title}: {mean}; their shares of it: {each}")
     return found
 
 

@@ -26,6 +26,7 @@ class PeriodicPositionDeviation(PeriodicShapes, Cause):
     unit = "arcsec"
     spread_share = 0.15
     """Position errors are a part of the twist at rated torque."""
+    others = True
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:

@@ -12,8 +12,12 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 
 USUAL = (1, 2, 4)
 """Per turn: eccentricity, the two lobes, and their multiple."""
-HARMONICS = ((1,), (2,), (4,), (3,), (5,), (6,), (1, 2), (2, 4), USUAL)
-"""Which come together; three, five and six by themselves, of screws and of a seat that is not round."""
+HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), USUAL)
+"""Which of them come together."""
+OTHERS = ((3,), (5,), (6,))
+"""Of screws, and of a seat that is not round."""
+MOST_SPANNED = 13
+"""Positions, at up to which a zero and the harmonics 1 to 6 fit anything; the others are not tried there."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
@@ -31,13 +35,16 @@ class PeriodicShapes:
     vary: ClassVar[str] = "input_angle_deg"
     shows_over: ClassVar[str] = "input_angle_deg"
 
+    others: ClassVar[bool] = False
+    """Whether harmonics beside `USUAL` are tried too."""
+
     def shapes(self, rig: FitContext) -> list[Shape]:
         """Sets of harmonics, where the input angle was recorded."""
-        return harmonic_shapes(rig)
+        return harmonic_shapes(rig, self.others)
 
 
-def harmonic_shapes(rig: FitContext) -> list[Shape]:
-    """Sets of harmonics, where the input angle was recorded.
+def harmonic_shapes(rig: FitContext, others: bool = False) -> list[Shape]:
+    """Sets of harmonics, where the input angle was recorded; `OTHERS` at enough positions only.
 
     At positions that are multiples of a harmonic's period it is the same everywhere; such a harmonic is
     left out, unless there is but one position.
@@ -50,8 +57,10 @@ def harmonic_shapes(rig: FitContext) -> list[Shape]:
     def varies(n: int) -> bool:
         return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > VARIES)
 
-    seen = {n for n in set().union(*HARMONICS) if len(places) == 1 or varies(n)}
-    return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)]
+    enough = len(np.unique(np.round(np.degrees(places)))) > MOST_SPANNED
+    tried = HARMONICS + (OTHERS if others and enough else ())
+    seen = {n for n in set().union(*tried) if len(places) == 1 or varies(n)}
+    return [dict(zip(KEYS, map(float, n), strict=False)) for n in tried if seen.issuperset(n)]
 
 
 def harmonic(shape: Shape, history: History) -> np.ndarray:

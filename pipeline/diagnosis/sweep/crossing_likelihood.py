@@ -29,7 +29,7 @@ FAR_SIDE = 5.0
 """Widths from the place, beyond which a row's side is sure to one in three million."""
 STRAIGHT_ENDS = 8.0
 """Times the reading's noise, from which soft ends are as good as straight within it: the bend moves a row by
-half/8²/4 at most, half a percent of half the gap."""
+0.006 of half the gap at most (a hyperbolic tangent's second derivative is 0.77 at most, over 2·8²)."""
 _nodes, _weights = np.polynomial.hermite_e.hermegauss(15)
 """Of a normal deviate: no farther apart than one of its deviations, the narrowest crossing."""
 _weights /= _weights.sum()
@@ -56,12 +56,13 @@ READINGS = (0.5, 1.0, 2.0)
 NARROW_ENDS, ENDS_RATIO = 4.0, 2.0
 """Widths of soft ends that are always tried, from 1, each twice the last one."""
 SOFTEST = 0.04
-"""Of the largest torque: wider ends are not tried. Teeth that take up their load one after another have ends
-of a hundredth; what is much softer bends the curve where stiffness is measured, and is hardening."""
+"""Of the largest torque: the first width beyond is the last one tried. Teeth that take up their load one
+after another have ends of a hundredth; what is much softer bends the curve where stiffness is measured, and
+is hardening."""
 FORM_DOUBT = 0.3
-"""Of half the gap, times the slope of soft ends, by which their form is unknown. Two hyperbolic tangents of
-widths √2 apart, which is as far as a width may be from one that is tried at first, differ by as much, and one
-and a straight ramp by half of it."""
+"""Of half the gap, times the slope of soft ends, by which their form is unknown: within the ends' width, two
+hyperbolic tangents of widths √2 apart differ by as much, and no width is farther from one that is tried at
+first. It counts for each row by itself, though a form is wrong in all rows alike."""
 FINER = (-0.75, -0.5, -0.25, 0.25, 0.5, 0.75)
 """Steps of the last ratio of widths, between which a width is looked for: where rows are denser on one side
 of the crossing, a wrong width there is taken for another place."""
@@ -73,8 +74,8 @@ def blurs_of(width_share: float) -> tuple[Blur, ...]:
     All are as likely before the rows are seen.
     """
     ends = [1.0]
-    while (wider := ENDS_RATIO * ends[-1]) <= max(NARROW_ENDS, SOFTEST / width_share):
-        ends.append(wider)
+    while ends[-1] < max(NARROW_ENDS, SOFTEST / width_share):
+        ends.append(ENDS_RATIO * ends[-1])
     return (*map(Blur, READINGS), *(Blur(1.0, end) for end in ends))
 
 

@@ -55,6 +55,9 @@ def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path)
     true = {"friction_hysteresis": 10.0, "thermal_clearance": -0.6}[effect]
     assert abs(cause.magnitude - true) < 3 * cause.magnitude_std
     assert cause.magnitude_std < abs(true) / 20
+    if effect == "friction_hysteresis":
+        assert cause.widest_arcsec is not None
+        assert cause.widest_arcsec >= cause.magnitude
 
 
 def test_a_unit_is_called_by_the_name_that_the_file_gives_it(tmp_path: Path) -> None:
