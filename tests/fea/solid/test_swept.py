@@ -162,7 +162,9 @@ def swept(design: Design, part: str, finer: float = 1.0) -> TetMesh:
 def made(request: pytest.FixtureRequest) -> tuple[Design, str, TetMesh]:
     file, part, changes = PARTS[request.param]
     design = design_of(file, part, changes)
-    return design, part, swept(design, part, COARSER)
+    # a keyway bends a coarse mesh so far that arcs lose a ten-thousandth of the volume
+    finer = 1.0 if request.param == "keyed shaft, wide and shallow" else COARSER
+    return design, part, swept(design, part, finer)
 
 
 @pytest.fixture(scope="module")
