@@ -38,14 +38,8 @@ def finished_run(example: str, suite: Path, cache: Path) -> FinishedRun:
     AssertionError : the run failed, with what it said.
     """
     here, design = suite / example, EXAMPLES / f"{example}.toml"
-    out, said = here / "out", here / "said.json"
-    here.mkdir(exist_ok=True)
-    with one_at_a_time(here / "lock"):
-        if not said.exists():
-            done = run("run", design, "--out", out, "--json", cache=cache, timeout_s=PATIENCE_S)
-            assert done.returncode == 0, done.stderr
-            said.write_text(json.dumps([done.stdout, done.stderr]), encoding="utf-8")
-    stdout, stderr = json.loads(said.read_text(encoding="utf-8"))
+    out = here / "out"
+    stdout, stderr = _said_once(here, cache, "run", design, "--out", out, "--json")
     return FinishedRun(design, out, cache, stderr, json.loads(stdout))
 
 
@@ -66,23 +60,23 @@ def finished_diagnosis(suite: Path, cache: Path) -> FinishedDiagnosis:
     AssertionError : it failed, with what it said.
     """
     here, design = suite / "diagnosed", EXAMPLES / "xb1-40.toml"
-    out, said = here / "out", here / "said.txt"
+    out, record = here / "out", EXAMPLES / "measured" / "xb1-40-sweep.csv"
+    given = ("--Kb", 31329, "--Ke", 43339)
+    stdout, _ = _said_once(here, cache, "diagnose", design, record, *given, "--out", out)
+    return FinishedDiagnosis(out, stdout)
+
+
+def _said_once(here: Path, cache: Path, *words: object) -> tuple[str, str]:
+    """What a command, run by the first who asks, said on stdout and stderr."""
+    said = here / "said.json"
     here.mkdir(exist_ok=True)
-    words = (
-        "diagnose",
-        design,
-        EXAMPLES / "measured" / "xb1-40-sweep.csv",
-        "--Kb",
-        31329,
-        "--Ke",
-        43339,
-    )
     with one_at_a_time(here / "lock"):
         if not said.exists():
-            done = run(*words, "--out", out, cache=cache, timeout_s=PATIENCE_S)
+            done = run(*words, cache=cache, timeout_s=PATIENCE_S)
             assert done.returncode == 0, done.stderr
-            said.write_text(done.stdout, encoding="utf-8")
-    return FinishedDiagnosis(out, said.read_text(encoding="utf-8"))
+            said.write_text(json.dumps([done.stdout, done.stderr]), encoding="utf-8")
+    stdout, stderr = json.loads(said.read_text(encoding="utf-8"))
+    return stdout, stderr
 
 
 @contextmanager

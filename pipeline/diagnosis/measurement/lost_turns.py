@@ -51,7 +51,7 @@ def turned_unseen(history: History) -> np.ndarray:
 
 def turning_like(history: History, made: History) -> History:
     """`made`, of the same rows, whose torque was made of the history's and turns where that does."""
-    lost_turns.is_known(made, lost_turns(history))
+    lost_turns.keep(made, lost_turns(history))
     return made
 
 

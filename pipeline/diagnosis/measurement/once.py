@@ -28,12 +28,12 @@ class once(Generic[*Numbers, T]):
     def __call__(self, history: History, *numbers: *Numbers) -> T:
         key = self._key(numbers)
         if key not in history.memo:
-            self.is_known(history, self._find(history, *numbers), *numbers)
+            self.keep(history, self._find(history, *numbers), *numbers)
         kept: T = history.memo[key]
         return kept
 
-    def is_known(self, history: History, answer: T, *numbers: *Numbers) -> None:
-        """Keep an answer that is known already: a history made of another has what that one had."""
+    def keep(self, history: History, answer: T, *numbers: *Numbers) -> None:
+        """An answer that is known already: a history made of another has what that one had."""
         if isinstance(answer, np.ndarray):
             answer.setflags(write=False)
         history.memo[self._key(numbers)] = answer

@@ -87,7 +87,7 @@ def less_jitter(history: History) -> History:
     """The history with its torque less the noise, as far as the rows around each one know it."""
     torque = history.torque_Nm - jitter(history, widest(history))
     cleared = turning_like(history, replace(history, torque_Nm=torque))
-    noise_of_usual_rows_Nm.is_known(cleared, np.full(len(history), _left_Nm(reading_of(history))))
+    noise_of_usual_rows_Nm.keep(cleared, np.full(len(history), _left_Nm(reading_of(history))))
     return cleared
 
 

@@ -192,8 +192,7 @@ class CrossingRows:
         share = np.tanh(beyond / blur.ends)
         of_torque = half * (1 - share**2) * blur.reading / blur.ends
         std = np.hypot(self._beside_soft_ends(share, half), of_torque)
-        off = (left - half * share) / std
-        return np.asarray(np.exp(-off * off / 2) / (np.sqrt(2 * np.pi) * std))
+        return _normal(left - half * share, std)
 
     def _beside_soft_ends(self, share: np.ndarray, half: np.ndarray) -> np.ndarray:
         """Deviation [arcsec] of a row's angle from that `share` (−1 … 1) of half its gap."""
@@ -201,12 +200,14 @@ class CrossingRows:
 
     def _near(self, mean: np.ndarray, left: np.ndarray) -> np.ndarray:
         """Normal density of angles about a mean."""
-        noise = self.noise_arcsec
-        return np.asarray(
-            np.exp(-(((left - mean) / noise) ** 2) / 2) / (np.sqrt(2 * np.pi) * noise)
-        )
+        return _normal(left - mean, self.noise_arcsec)
 
     def _log(self, own: np.ndarray, gap: np.ndarray) -> np.ndarray:
         """A row that the model does not claim lies anywhere over twice its gap."""
         other = OUTLIER_SHARE / (2 * gap + SPIKE_REACH * self.noise_arcsec)
         return np.asarray(np.log((1 - OUTLIER_SHARE) * own + other))
+
+
+def _normal(off: np.ndarray, std: np.ndarray | float) -> np.ndarray:
+    """Normal density of what lies so far off its mean."""
+    return np.asarray(np.exp(-((off / std) ** 2) / 2) / (np.sqrt(2 * np.pi) * std))

@@ -24,7 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
-from flexspline.pipeline.diagnosis.sweep.own_units import CauseSize, size_of, sizes_in_units
+from flexspline.pipeline.diagnosis.sweep.own_units import size_of, sizes_in_units
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
@@ -47,13 +47,12 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     timed = explained.prepared.sweep.history.time_s is not None
     told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
-    in_units: dict[tuple[int, ...], dict[str, CauseSize]] = {(): {}}
+    own_units = {c: shares.own for c, shares in explained.shares.items()}
+    in_units = {own: sizes_in_units(explained, own) for own in {*own_units.values()} - {()}}
     found = []
     for c in identified.named:
-        own = explained.shares[c].own if c in explained.shares else ()
-        if own not in in_units:
-            in_units[own] = sizes_in_units(explained, own)
-        there = in_units[own]
+        own = own_units.get(c, ())
+        there = in_units.get(own, {})
         # their own rows may show another cause in its place
         instead = there if there and c not in there else ()
         unweighed = (*_other_rivals(explained, c, told, timed), *instead)

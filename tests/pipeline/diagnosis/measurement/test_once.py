@@ -42,6 +42,6 @@ def test_what_is_kept_cannot_be_written_to() -> None:
 def test_what_is_known_is_not_looked_for() -> None:
     ASKED.clear()
     history = History.course(np.array([1.0, 2.0, 3.0]))
-    beyond.is_known(history, 7, 1.5)
+    beyond.keep(history, 7, 1.5)
     assert [beyond(history, limit) for limit in (1.5, 2.5)] == [7, 1]
     assert ASKED == [2.5]

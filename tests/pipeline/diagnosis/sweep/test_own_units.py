@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from histories import sweep as swept
 
 import flexspline
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.own_units import of_units
 from flexspline.results.diagnosis.structure_words import structure_words
 
@@ -30,24 +32,34 @@ def friction(torque: np.ndarray, threshold: float) -> np.ndarray:
     return state
 
 
+def outcome_of(
+    folder: Path, angles: Mapping[str, np.ndarray], torque: np.ndarray, warm: np.ndarray
+) -> DiagnosisOutcome:
+    """Of a file in which every unit, by its name, has the same torques and temperatures."""
+    lines = [HEAD]
+    for unit, angle in angles.items():
+        lines += [
+            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},{warm[i]:.2f},{angle[i]:.3f}"
+            for i in range(len(torque))
+        ]
+    path = folder / "m.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return diagnose_file(DESIGN, path, 31312, 43275).outcome
+
+
 @pytest.mark.parametrize("effect", ["friction_hysteresis", "thermal_clearance"])
 def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     torque = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
     warm = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
-    lines = [HEAD]
+    angles = {}
     for unit in "abc":
         gap = 72.0 - 0.6 * (warm - 20) * (unit == WITH and effect == "thermal_clearance")
         angle = 11.35 * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.3, 900)
         if unit == WITH and effect == "friction_hysteresis":
             angle -= 5.0 / 0.8 * friction(torque, 0.8)
-        lines += [
-            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},{warm[i]:.2f},{angle[i]:.3f}"
-            for i in range(900)
-        ]
-    path = tmp_path / "m.csv"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    outcome = diagnose_file(DESIGN, path, 31312, 43275).outcome
+        angles[unit] = angle
+    outcome = outcome_of(tmp_path, angles, torque, warm)
     (cause,) = outcome.causes
     assert cause.id == effect
     assert cause.own_units == (WITH,)
@@ -64,16 +76,11 @@ def test_a_unit_is_called_by_the_name_that_the_file_gives_it(tmp_path: Path) -> 
     """A gear that is a fifth softer than the others has no cause's name."""
     rng = np.random.default_rng(5)
     torque = 2.0 * np.interp(np.arange(600) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
-    lines = [HEAD]
-    for unit, compliance in (("left", 11.35), ("right", 11.35), ("spare", 13.6)):
-        angle = compliance * torque + 36 * np.sign(torque) + rng.normal(0, 0.3, 600)
-        lines += [
-            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},20.0,{angle[i]:.3f}"
-            for i in range(600)
-        ]
-    path = tmp_path / "m.csv"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    outcome = diagnose_file(DESIGN, path, 31312, 43275).outcome
+    angles = {
+        unit: compliance * torque + 36 * np.sign(torque) + rng.normal(0, 0.3, 600)
+        for unit, compliance in (("left", 11.35), ("right", 11.35), ("spare", 13.6))
+    }
+    outcome = outcome_of(tmp_path, angles, torque, np.full(600, 20.0))
     assert outcome.verdict == "unknown"
     (left,) = outcome.unexplained
     assert left.channel == "unit"
