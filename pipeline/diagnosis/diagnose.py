@@ -90,7 +90,8 @@ class Diagnosis:
         """The same of each unit, where a sweep has several."""
         if self.sweep is None or not isinstance(self.measurement, Sweep):
             return {}
-        names, fit = self.measurement.units, self.sweep.explained.identified.fit
+        explained = self.sweep.explained
+        names, fit = explained.prepared.sweep.units, explained.identified.fit
         return {n: fit.calibration_of(u) for u, n in enumerate(names)} if len(names) > 1 else {}
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -34,18 +35,20 @@ def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "file_format": form_record(read_as),
         "read_as": columns_record(read_as),
     }
-    if diagnosis.sweep is not None:
-        record["rows"] = _rows(diagnosis.sweep.explained.prepared)
+    if diagnosis.sweep is not None and isinstance(measurement, Sweep):
+        record["rows"] = _rows(diagnosis.sweep.explained.prepared, len(measurement))
     if diagnosis.calibration is not None:
         record["calibrated"] = _calibrated(diagnosis.calibration)
     return record
 
 
-def _rows(prepared: PreparedSweep) -> dict[str, Any]:
+def _rows(prepared: PreparedSweep, rows: int) -> dict[str, Any]:
+    """By their use; `rows` of all units, of which `prepared` may be one."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
     wrong, held = sum(w.rows_left_out for w in prepared.sweep.wrong), prepared.sweep.held_rows
     measured = counts.total if averaging is None else averaging.rows_read
-    record: dict[str, Any] = {"read": measured + wrong + held}
+    others = rows - measured
+    record: dict[str, Any] = {"read": rows + wrong + held}
     if averaging is not None:
         record |= {"averaged": averaging.rows_averaged, "means": counts.total}
     return record | {
@@ -56,6 +59,7 @@ def _rows(prepared: PreparedSweep) -> dict[str, Any]:
             "before_first_reversal": counts.settling,
             "outlier": counts.outliers + wrong,
             **({"held_reading": held} if held else {}),
+            **({"other_units": others} if others else {}),
         },
     }
 

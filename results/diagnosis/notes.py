@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
-from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
@@ -22,12 +20,11 @@ from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.reading import heads, reading_notes, wrong_notes
 from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
+from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
-from flexspline.results.numbers import grouped, signed
+from flexspline.results.numbers import grouped
 
-UNITS_APART_PCT = 1.0
-"""Of their compliance, from which each unit's own is said: what clamps and bolts differ by."""
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
@@ -103,7 +100,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
         return (
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
-            *unit_size_notes(diagnosis.sweep.model),
+            *unit_notes(diagnosis.sweep),
             *of_record,
         )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
@@ -140,7 +137,6 @@ def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> lis
     found += _noise_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
-    found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
@@ -185,37 +181,6 @@ def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
     return [
         f"{some} of {every} rows were used to compare causes; every unit was compared with the envelope"
     ]
-
-
-def _unit_notes(explained: ExplainedSweep) -> list[str]:
-    """What the units have in common, and how they differ."""
-    names = explained.prepared.sweep.units
-    found = []
-    for cause, shares in explained.shares.items():
-        title = title_of(cause)
-        if not shares.differ:
-            found.append(f"{title}: common to all {len(names)} units")
-            continue
-        own = zip(names, shares.share, shares.share_std, strict=True)
-        each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
-        mean = "differs between units; the extended model gives each of them the mean"
-        found.append(f"{title}: {mean}; their shares of it: {each}")
-    return found
-
-
-def unit_size_notes(model: ExtendedModel) -> list[str]:
-    """Gap and compliance of each unit, where there are several: `calibrated` has what they have in common."""
-    if len(model.own) < 2:
-        return []
-    gaps = {unit: model.gap_arcsec + gap for unit, (_, gap) in model.own.items()}
-    each = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
-    apart = max(gaps.values()) - min(gaps.values())
-    found = [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
-    softer = {u: 100 * compliance / model.compliance for u, (compliance, _) in model.own.items()}
-    if max(softer.values()) - min(softer.values()) > UNITS_APART_PCT:
-        each = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
-        found.append(f"compliance of each unit beside what they have in common: {each}")
-    return found
 
 
 def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:

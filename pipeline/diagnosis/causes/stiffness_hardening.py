@@ -29,8 +29,14 @@ CUBIC_SHARES = (1.0, 5.0)
 twist; refined within LIMITS."""
 SHARES = (0.35, 0.65)
 """Of the soft twist that ends at the first of two knees: the lesser and the greater part; refined."""
-HELD, AT_ZERO = (0, 1, 2), 2
-"""Where the stiffness is as simulated: at the largest torque, on the chord, or at zero."""
+FAR_OUT, ON_THE_CHORD, AT_ZERO, AT_LARGEST = 0, 1, 2, 3
+"""Where the stiffness is as simulated: where a law has levelled off, on the chord, at zero, or at the largest
+torque, where laws without a knee still bend. Numbers in an extended model's file, as `LAWS`."""
+HELD = (FAR_OUT, ON_THE_CHORD, AT_ZERO)
+"""Of laws that have levelled off at the largest torque."""
+BENDS_ON, LEVELLED_OFF = (LAWS["tanh"], LAWS["rational"]), 0.02
+"""Laws that level off, but not at the largest torque; their slope there, over the chord's, from which that
+counts: less of a hardening of a quarter of the twist is half a percent of the stiffness."""
 LIMITS = {
     0: (0.1, 0.78),
     1: (0.1, 0.7),
@@ -80,8 +86,7 @@ class StiffnessHardening(Cause):
         found: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.largest_Nm}
             for law, p in laws
-            for held in HELD
-            if not (law == "power" and held == AT_ZERO)  # infinitely soft at zero
+            for held in self._held({"law": LAWS[law], "parameter": p})
         ]
         found += [
             {
@@ -95,9 +100,16 @@ class StiffnessHardening(Cause):
         return found
 
     def but_for_a_spring(self, shape: Shape) -> list[Shape]:
-        power = int(shape["law"]) == LAWS["power"]  # infinitely soft at zero
-        others = [h for h in HELD if h != shape["held"] and not (power and h == AT_ZERO)]
-        return [{**shape, "held": held} for held in others]
+        return [{**shape, "held": h} for h in self._held(shape) if h != shape["held"]]
+
+    @classmethod
+    def _held(cls, shape: Shape) -> tuple[int, ...]:
+        """Where the stiffness may be as simulated."""
+        law = int(shape["law"])
+        if law == LAWS["power"]:  # levels off nowhere, and is infinitely soft at zero
+            return AT_LARGEST, ON_THE_CHORD
+        bends_on = law in BENDS_ON and cls._slope_at_the_largest(shape) > LEVELLED_OFF
+        return (*HELD, AT_LARGEST) if bends_on else HELD
 
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
@@ -149,7 +161,9 @@ class StiffnessHardening(Cause):
     def _slope_held(self, shape: Shape) -> float:
         """Of the law [1 per share of the largest torque], where the stiffness is as simulated."""
         match int(shape["held"]):
-            case 0:
+            case 0 if int(shape["law"]) != LAWS["cubic spring"]:
+                return 0.0
+            case 0 | 3:
                 return self._slope_at_the_largest(shape)
             case 1:
                 return 1.0
@@ -158,9 +172,18 @@ class StiffnessHardening(Cause):
 
     @staticmethod
     def _slope_at_the_largest(shape: Shape) -> float:
-        """Of a spring that goes on to stiffen; the other laws level off."""
         p = shape["parameter"]
-        return (1 + p) / (1 + 3 * p) if int(shape["law"]) == LAWS["cubic spring"] else 0.0
+        match int(shape["law"]):
+            case 1:
+                return float(1 / p / np.cosh(1 / p) ** 2 / np.tanh(1 / p))
+            case 2:
+                return p
+            case 4:
+                return p / (1 + p)
+            case 6:  # a spring goes on to stiffen
+                return (1 + p) / (1 + 3 * p)
+            case _:
+                return 0.0
 
     @staticmethod
     def _slope_at_zero(shape: Shape) -> float:

@@ -24,7 +24,6 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
-from flexspline.pipeline.diagnosis.sweep.own_units import size_of, sizes_in_units
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
@@ -47,15 +46,11 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     timed = explained.prepared.sweep.history.time_s is not None
     told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
-    own_units = {c: shares.own for c, shares in explained.shares.items()}
-    in_units = {own: sizes_in_units(explained, own) for own in {*own_units.values()} - {()}}
+    units = explained.prepared.sweep.units
     found = []
     for c in identified.named:
-        own = own_units.get(c, ())
-        there = in_units.get(own, {})
-        # their own rows may show another cause in its place
-        instead = there if there and c not in there else ()
-        unweighed = (*_other_rivals(explained, c, told, timed), *instead)
+        unweighed = tuple(_other_rivals(explained, c, told, timed))
+        shares = explained.shares.get(c)
         rivals = (*identified.rivals[c], *unweighed)
         chance = probability(c, sets)
         # where likelier explanations do without it, its gain over others says nothing
@@ -63,12 +58,11 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
-        size = there.get(c, size_of(explained, c, magnitude[c], std[c]))
+        widest = identified.fit.widest_loop_arcsec() if c == FRICTION else None
         found.append(NamedCause(
             c, beside_unweighed(chance, unweighed), tuple(dict.fromkeys(rivals)),
-            size.magnitude, size.std, known_causes()[c].unit, nats, size.rms_arcsec,
-            tuple(explained.prepared.sweep.units[u] for u in own), _ahead_Nm(explained, c),
-            size.widest_arcsec,
+            magnitude[c], std[c], known_causes()[c].unit, nats, identified.rms[c],
+            tuple(units[u] for u in shares.own) if shares else (), _ahead_Nm(explained, c), widest,
             c == DRIFT and may_follow_temperature(identified),
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:

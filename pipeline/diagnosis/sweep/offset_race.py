@@ -48,13 +48,13 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
             first, last = raced[0], raced[-1]
             # not by the angles' misfit: lags of temperature, tuned in each race, move that by tens of nats
             return first if wrong_side_rows(first) < wrong_side_rows(last) else last
-    if seen is not None and _counts(seen, prepared):
+    if seen is not None and is_shifted(seen, prepared):
         return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
     return plain
 
 
-def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
-    """Whether an offset is sure and large enough to be said."""
+def is_shifted(seen: Crossing, prepared: PreparedSweep) -> bool:
+    """Whether the offset of a crossing is sure and large enough to be said."""
     least = OFFSET_LEAST[seen.nats > OFFSET_SURE] * prepared.rig.largest_Nm
     return seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > least
 
@@ -62,7 +62,7 @@ def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
 def offset_of(explained: ExplainedSweep) -> float:
     """The offset [N·m] at which a race sees the gap crossed; 0 where it is none that counts."""
     seen = explained.crossing
-    return seen.offset_Nm if seen is not None and _counts(seen, explained.prepared) else 0.0
+    return seen.offset_Nm if seen is not None and is_shifted(seen, explained.prepared) else 0.0
 
 
 def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep, ...]:
@@ -74,7 +74,7 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep,
         except TooFewRowsError:
             return ()
         seen, prepared = found[-1].crossing, found[-1].prepared
-        if seen is None or not _counts(seen, prepared):
+        if seen is None or not is_shifted(seen, prepared):
             return ()
         if abs(seen.offset_Nm - offset_Nm) < max(
             SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.largest_Nm

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
+from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
 from flexspline.results.diagnosis.words import cause_title
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
@@ -21,15 +25,31 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
 
 
 def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
-    """Shares of each cause that the race named, by its title; none for a single unit."""
-    shares = shown.explained.shares
-    named = [c for c in shown.diagnosis.outcome.causes if c.id in shares]
-    return {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in named[:MOST_CAUSES]}
+    """How much of each cause each unit shows, by the cause's title; none for a single unit."""
+    apart, causes = shown.analysis.apart, shown.diagnosis.outcome.causes
+    if apart is None:
+        shares = {c.id: shown.explained.shares.get(c.id) for c in causes}
+    else:
+        shares = {c.id: _sizes_apart(apart, c) for c in causes}
+    found = {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in causes}
+    return {title: own for title, own in [*found.items()][:MOST_CAUSES] if own is not None}
+
+
+def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
+    """Sizes in units that were diagnosed each by itself, over the one that is stated."""
+    known = known_causes().get(cause.id)
+    none = known.none if known else 0.0
+    own = [{c.id: c for c in j.decision.causes}.get(cause.id) for j in apart.judged.values()]
+    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in own]
+    size, std = np.array(pairs).T
+    whole = cause.magnitude - none
+    return UnitAmplitudes((size - none) / whole, std / abs(whole), inf)
 
 
 def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
-    """One panel per cause: 1 is as much as all units together show, 0 nothing."""
-    names = plain_names(shown.explained.prepared.sweep.units)
+    """One panel per cause: 1 is the size that is stated, 0 nothing."""
+    apart = shown.analysis.apart
+    names = plain_names(tuple(apart.judged) if apart else shown.explained.prepared.sweep.units)
     height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM
     x = np.arange(len(names))
     with styled():

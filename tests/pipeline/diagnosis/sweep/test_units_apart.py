@@ -14,7 +14,7 @@ from histories import sweep as swept
 import flexspline
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
-from flexspline.pipeline.diagnosis.sweep.own_units import of_units
+from flexspline.pipeline.diagnosis.sweep.units_apart import of_units
 from flexspline.results.diagnosis.structure_words import structure_words
 
 pytestmark = pytest.mark.usefixtures("causes_only")
@@ -47,40 +47,67 @@ def outcome_of(
     return diagnose_file(DESIGN, path, 31312, 43275).outcome
 
 
-@pytest.mark.parametrize("effect", ["friction_hysteresis", "thermal_clearance"])
+TORQUE = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
+WARM = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
+
+
+def angle_of(effect: str | None, rng: np.random.Generator) -> np.ndarray:
+    """A gear of 11.35 arcsec per N·m and a gap of 72 arcsec, with one effect or none."""
+    gap = 72.0 - 0.6 * (WARM - 20) * (effect == "thermal_clearance")
+    angle = 11.35 * TORQUE + gap / 2 * np.sign(TORQUE) + rng.normal(0, 0.3, 900)
+    if effect == "friction_hysteresis":
+        angle -= 5.0 / 0.8 * friction(TORQUE, 0.8)
+    if effect == "series_compliance":
+        angle += 0.2 * 11.35 * TORQUE
+    if effect == "sensor_drift":
+        angle += 12.0 * np.arange(900) * 10 / 3600
+    return angle
+
+
+TRUE = {
+    "friction_hysteresis": 10.0,  # arcsec, full width of the loop at T = 0
+    "thermal_clearance": -0.6,  # arcsec per K
+    "sensor_drift": 12.0,  # arcsec per hour
+}
+
+
+@pytest.mark.parametrize("effect", TRUE)
 def test_the_size_is_that_of_the_unit_that_shows_it(effect: str, tmp_path: Path) -> None:
+    """A mean over the units is a third of it, and what that misses has no name."""
     rng = np.random.default_rng(4)
-    torque = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
-    warm = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
-    angles = {}
-    for unit in "abc":
-        gap = 72.0 - 0.6 * (warm - 20) * (unit == WITH and effect == "thermal_clearance")
-        angle = 11.35 * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.3, 900)
-        if unit == WITH and effect == "friction_hysteresis":
-            angle -= 5.0 / 0.8 * friction(torque, 0.8)
-        angles[unit] = angle
-    outcome = outcome_of(tmp_path, angles, torque, warm)
+    angles = {unit: angle_of(effect if unit == WITH else None, rng) for unit in "abc"}
+    outcome = outcome_of(tmp_path, angles, TORQUE, WARM)
+    assert outcome.verdict == "named"
     (cause,) = outcome.causes
     assert cause.id == effect
     assert cause.own_units == (WITH,)
-    # full width of the loop at T = 0, and arcsec per K; a mean over the units is a third of it
-    true = {"friction_hysteresis": 10.0, "thermal_clearance": -0.6}[effect]
-    assert abs(cause.magnitude - true) < 3 * cause.magnitude_std
-    assert cause.magnitude_std < abs(true) / 20
-    if effect == "friction_hysteresis":
-        assert cause.widest_arcsec is not None
-        assert cause.widest_arcsec >= cause.magnitude
+    assert abs(cause.magnitude - TRUE[effect]) < 3 * cause.magnitude_std
+    assert cause.magnitude_std < abs(TRUE[effect]) / 20
+
+
+def test_units_that_show_different_things_have_each_its_own(tmp_path: Path) -> None:
+    rng = np.random.default_rng(6)
+    shows = {"a": "sensor_drift", "b": None, "c": "friction_hysteresis"}
+    angles = {unit: angle_of(effect, rng) for unit, effect in shows.items()}
+    outcome = outcome_of(tmp_path, angles, TORQUE, WARM)
+    own = {c.id: c.own_units for c in outcome.causes}
+    assert own == {"sensor_drift": ("a",), "friction_hysteresis": ("c",)}
+
+
+def test_what_all_units_show_is_told_by_all(tmp_path: Path) -> None:
+    rng = np.random.default_rng(7)
+    angles = {unit: angle_of("thermal_clearance", rng) for unit in "abc"}
+    (cause,) = outcome_of(tmp_path, angles, TORQUE, WARM).causes
+    assert cause.id == "thermal_clearance"
+    assert cause.own_units == ()
 
 
 def test_a_unit_is_called_by_the_name_that_the_file_gives_it(tmp_path: Path) -> None:
-    """A gear that is a fifth softer than the others has no cause's name."""
+    """A gear that is a fifth softer than the others has no cause's name: its reading may have a gain."""
     rng = np.random.default_rng(5)
-    torque = 2.0 * np.interp(np.arange(600) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
-    angles = {
-        unit: compliance * torque + 36 * np.sign(torque) + rng.normal(0, 0.3, 600)
-        for unit, compliance in (("left", 11.35), ("right", 11.35), ("spare", 13.6))
-    }
-    outcome = outcome_of(tmp_path, angles, torque, np.full(600, 20.0))
+    effects = {"left": None, "right": None, "spare": "series_compliance"}
+    angles = {unit: angle_of(effect, rng) for unit, effect in effects.items()}
+    outcome = outcome_of(tmp_path, angles, TORQUE, WARM)
     assert outcome.verdict == "unknown"
     (left,) = outcome.unexplained
     assert left.channel == "unit"

@@ -1,0 +1,70 @@
+"""What a reader should know of a sweep of several units: what they share, and how they differ."""
+
+from __future__ import annotations
+
+from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
+from flexspline.results.diagnosis.words import cause_title, magnitude_words, title_of
+from flexspline.results.numbers import signed
+
+UNITS_APART_PCT = 1.0
+"""Of their compliance, from which each unit's own is said: what clamps and bolts differ by."""
+
+
+def unit_notes(analysis: SweepAnalysis) -> list[str]:
+    """One line each; none for a single unit."""
+    if analysis.apart is not None:
+        return _apart_notes(analysis.apart)
+    return [*_share_notes(analysis.explained), *_size_notes(analysis.model)]
+
+
+def _apart_notes(apart: UnitsApart) -> list[str]:
+    """What each unit shows by itself, and which one the figures are of."""
+    found = [
+        "no explanation holds for all units, so each was diagnosed by its own rows; figures, errors on "
+        f"held-out rows and the extended model are of {apart.shown}"
+    ]
+    for name, judged in apart.judged.items():
+        causes = judged.decision.causes
+        said = "; ".join(map(_sized, causes)) if causes else "agrees with the simulation"
+        found.append(f"{name} by itself: {said}")
+    return found
+
+
+def _sized(cause: NamedCause) -> str:
+    return f"{cause_title(cause)}, {magnitude_words(cause)}"
+
+
+def _share_notes(explained: ExplainedSweep) -> list[str]:
+    """What the units have in common, and how they differ."""
+    names = explained.prepared.sweep.units
+    found = []
+    for cause, shares in explained.shares.items():
+        title = title_of(cause)
+        if not shares.differ:
+            found.append(f"{title}: common to all {len(names)} units")
+            continue
+        own = zip(names, shares.share, shares.share_std, strict=True)
+        each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
+        mean = "differs between units; the extended model gives each of them the mean"
+        found.append(f"{title}: {mean}; their shares of it: {each}")
+    return found
+
+
+def _size_notes(model: ExtendedModel) -> list[str]:
+    """Gap and compliance of each unit, where there are several: `calibrated` has what they have in common."""
+    if len(model.own) < 2:
+        return []
+    gaps = {unit: model.gap_arcsec + gap for unit, (_, gap) in model.own.items()}
+    each = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
+    apart = max(gaps.values()) - min(gaps.values())
+    found = [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
+    softer = {u: 100 * compliance / model.compliance for u, (compliance, _) in model.own.items()}
+    if max(softer.values()) - min(softer.values()) > UNITS_APART_PCT:
+        each = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
+        found.append(f"compliance of each unit beside what they have in common: {each}")
+    return found
