@@ -34,8 +34,11 @@ KINDS: tuple[MeshKind, ...] = get_args(MeshKind)
 SWEEPS: tuple[MeshKind, ...] = ("swept", "layered")
 """Those that no mesher makes."""
 
-COARSER_EDGES, COARSENINGS = 1.5, 3
-"""Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
+COARSER_EDGES, COARSENINGS, LAYERED_COARSENINGS = 1.5, 6, 3
+"""Edges of the next, coarser try over the last: a third of the elements, half of a thin plate's; and how many
+tries, of a mesh in layers fewer, whose tries cost as much as the mesh. A hat of 53 mm, its flange 183 mm wide
+and 0.19 mm thick, had 64 119 elements after three, known to ± 0.06 % where 1 % was asked, and 24 000 after
+six."""
 FIRST_ELEMENTS = 12_000
 """Of a first mesh: 55 000 unknowns. One of 57 000 elements took more than two minutes on a disc with small
 holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds; a shaft of two segments whose slot goes
@@ -143,7 +146,7 @@ class PartMeshes:
         """
         part, degrees = self.model.part, self.model.sector.degrees
         before = spec
-        for _ in range(COARSENINGS):
+        for _ in range(LAYERED_COARSENINGS):
             try:
                 return layered_mesh(part, degrees, spec, FIRST_ELEMENTS)
             except TooManyElementsError:
