@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from math import floor, log10
 
+from flexspline.geometry.bounds import MOST_DIGITS
+
 THIN = "\N{NARROW NO-BREAK SPACE}"
 """Between groups of three digits, and between a number and its unit."""
-
-MOST_DIGITS = 17
-"""As many as tell any two doubles apart."""
 
 
 def grouped(value: float, decimals: int) -> str:

@@ -92,14 +92,16 @@ def lobe_coefficient(n: int) -> float:
     return 2 / pi * p**2 * sin(n * LOBE_HALF_WIDTH) / (n * (p**2 - n**2))
 
 
-def lobe_stiffness(
+def lobe_stiffnesses(
     outline: Meridian,
     material: Elastic,
     supported: bool,
     relative_width: float,
     deadline: Deadline = NO_DEADLINE,
-) -> Stiffness:
-    """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
+) -> Iterator[Stiffness]:
+    """K_b under the lobe load, as each mesh gives it.
+
+    `supported`: the seat may not move radially, else it is free.
 
     `relative_width` is the wanted (upper - lower)/K as a fraction. A given load stores too little
     energy in too few unknowns and harmonics, so K_h is an upper bound (but for the fillets, which
@@ -112,18 +114,6 @@ def lobe_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    *_, last = lobe_stiffnesses(outline, material, supported, relative_width, deadline)
-    return last
-
-
-def lobe_stiffnesses(
-    outline: Meridian,
-    material: Elastic,
-    supported: bool,
-    relative_width: float,
-    deadline: Deadline = NO_DEADLINE,
-) -> Iterator[Stiffness]:
-    """What each mesh gives; the last is `lobe_stiffness`. Errors as there."""
     lobes = _RevolvedLobes(material, supported, relative_width)
     for shortfall in refinements(lobes, triangulate(outline), deadline, MOST_TRIANGLES):
         yield lobes.stiffness(shortfall)

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from math import exp
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import (
@@ -78,10 +79,14 @@ def is_rival(evidence_behind: float, likelihood_behind: float) -> bool:
 def probability(cause: str, explanations: Iterable[Scored]) -> float:
     """Posterior probability of a cause: the share of the evidence in explanations that have it."""
     scored = list(explanations)
-    score = np.array([s for _, s in scored])
-    weight = np.exp(score - score.max())
     having = np.array([cause in causes for causes, _ in scored])
-    return min(1.0, float(weight[having].sum() / weight.sum()))
+    return min(1.0, float(weights([s for _, s in scored])[having].sum()))
+
+
+def weights(scores: ArrayLike) -> np.ndarray:
+    """(n,) posterior probabilities of explanations that exclude each other, by their log evidence."""
+    likelihood = np.exp(np.subtract(scores, np.max(scores)))
+    return np.asarray(likelihood / likelihood.sum())
 
 
 def beside_unweighed(probability: float, rivals: Collection[str]) -> float:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-SIGMA_PER_MAD, MAD_PER_SIGMA = 1.4826, 0.6745
-"""Standard deviation over median absolute deviation of a normal distribution, 1/Φ⁻¹(3/4), and the reverse."""
+SIGMA_PER_MAD = 1.482602
+"""Standard deviation over median absolute deviation of a normal distribution, 1/Φ⁻¹(3/4)."""
 
 
 def rms(values: ArrayLike) -> float:
@@ -18,3 +18,14 @@ def rms(values: ArrayLike) -> float:
     3.536
     """
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+def robust_std(deviations: ArrayLike) -> float:
+    """Standard deviation about zero of normal noise, in its unit, whatever a minority of the values is.
+
+    Examples
+    --------
+    >>> round(robust_std([-1.0, 0.5, 0.6745, -0.2, 900.0]), 3)
+    1.0
+    """
+    return SIGMA_PER_MAD * float(np.median(np.abs(deviations)))

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 from example_cup import CUP
+from lobe_stiffness import lobe_stiffness
 
 from flexspline.fea.axisymmetric import contact, lobes, peak_refinement, torsion
 from flexspline.fea.axisymmetric.contact import contact_stiffness
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline, OutOfTimeError, Pace

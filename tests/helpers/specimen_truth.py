@@ -13,8 +13,8 @@ from typing import Literal
 
 import numpy as np
 from example_files import EXAMPLES
+from lobe_stiffness import lobe_stiffness
 
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design

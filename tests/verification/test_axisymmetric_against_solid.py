@@ -13,8 +13,8 @@ from functools import cache
 import numpy as np
 import pytest
 from example_files import EXAMPLES
+from lobe_stiffness import lobe_stiffness
 
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.load_cases import ellipse, lobes

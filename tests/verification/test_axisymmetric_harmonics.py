@@ -9,6 +9,7 @@ import pytest
 from axisymmetric_shapes import MODEL_CUP, cups, hats, outline
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from lobe_stiffness import lobe_stiffness
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import (
@@ -22,7 +23,6 @@ from flexspline.fea.axisymmetric.harmonics import (
 from flexspline.fea.axisymmetric.lobes import (
     LOBE_HALF_WIDTH,
     lobe_coefficient,
-    lobe_stiffness,
     solve_lobes,
 )
 from flexspline.fea.axisymmetric.recovery import recovered

@@ -10,6 +10,7 @@ import tomllib
 import numpy as np
 import pytest
 from example_files import EXAMPLES
+from lobe_stiffness import lobe_stiffness
 from scipy.linalg import cho_factor
 
 from flexspline.fea.axisymmetric.bisection import refined
@@ -22,7 +23,6 @@ from flexspline.fea.axisymmetric.contact import (
 )
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lift_off import pushing
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import Elastic, Stiffness

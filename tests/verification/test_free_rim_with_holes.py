@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
+from lobe_stiffness import lobe_stiffness
 
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.cache import Cache

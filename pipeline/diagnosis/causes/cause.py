@@ -107,7 +107,9 @@ class Cause(ABC):
     This one is for a cause of which no such records have been made yet.
     """
     spread_share: ClassVar[float]
-    """Of `spread`: its share of the predicted twist or angle, where it is one."""
+    """Of `spread`: its share of the predicted twist, angle or compliance, where it is one."""
+    per_torque: ClassVar[bool] = False
+    """Whether amplitudes are in arcsec per N·m: `spread` is then a share of the predicted compliance."""
     needs_time: ClassVar[bool] = False
     """Whether nothing can be said of it where time was not recorded."""
     vary: ClassVar[str] = "torque_Nm"
@@ -180,9 +182,10 @@ class Cause(ABC):
 
         Shares of the predicted twist or angle, by judgement; they need not be near. All of them halved
         change one verdict of 34 made-up records (`tests/hidden`, seed 77: `ambiguous` becomes `named`),
-        doubled none. Left out, it is a share of the predicted angle.
+        doubled none. Left out, it is a share of the predicted compliance (`per_torque`) or angle.
         """
-        return self.spread_share * rig.scale_arcsec
+        whole = rig.prediction.compliance if self.per_torque else rig.scale_arcsec
+        return self.spread_share * whole
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """The magnitude (docs/contract.md) of all elements together, in `unit`.

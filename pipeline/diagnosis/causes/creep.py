@@ -54,6 +54,7 @@ class Creep(Cause):
     id = CREEP
     title = "creep (twist that grows while torque is held)"
     unit = "%"
+    per_torque = True
     spread_share = 0.06
     """Metal creeps little; a few per cent of the twist a decade are grease, adhesive and bolts."""
     ratio = "in % of the elastic twist for each decade of time within holds"
@@ -118,9 +119,6 @@ class Creep(Cause):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, weight = self._kelvin(shape)
         return (lags(by_known_ways(history), history, tau) @ weight)[:, None]
-
-    def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""

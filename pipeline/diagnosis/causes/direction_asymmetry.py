@@ -31,6 +31,7 @@ class DirectionAsymmetry(Cause):
     id = ASYMMETRY
     title = "stiffness that differs with the torque's direction"
     unit = "%"
+    per_torque = True
     spread_share = 0.15
     """Both directions load the same parts; keys, bolts and flanks differ by some tenths at most."""
     ratio = "difference between the two directions in % of their mean"
@@ -60,9 +61,6 @@ class DirectionAsymmetry(Cause):
         largest = shape["largest_torque_Nm"]
         x = _share(by_known_ways(history) / largest, shape["rounding_Nm"] / largest)
         return (largest * x ** shape["exponent"])[:, None]
-
-    def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """(K₊ − K₋) over their mean: −2a/c for chord compliances c ± a, exactly."""

@@ -24,6 +24,7 @@ class PositionStiffness(PeriodicShapes, Cause):
     id = POSITION
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
+    per_torque = True
     spread_share = 0.15
     """Teeth in mesh change by one in seven or fewer as the wave generator turns."""
     ratio = "amplitude of the compliance in % of its mean"
@@ -34,9 +35,6 @@ class PositionStiffness(PeriodicShapes, Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history) * history.torque_Nm[:, None]
-
-    def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return 100 * largest_amplitude(elements) / rig.compliance

@@ -20,6 +20,7 @@ class SeriesCompliance(Cause):
     id = SERIES
     title = "elastic part left out of the simulation"
     unit = "%"
+    per_torque = True
     spread_share = 0.4
     """A joint or a bearing left out yields nearly as much as what is simulated."""
     ratio = "in % of the simulated compliance"
@@ -38,9 +39,6 @@ class SeriesCompliance(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return history.torque_Nm[:, None]
-
-    def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         return 100 * (rig.compliance / rig.prediction.compliance - 1)

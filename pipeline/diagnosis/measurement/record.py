@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadin
 HEADS_SHOWN = 12
 """Columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
-"""One more than zero, stiffness and gap."""
+"""Of different torques too: one more than zero, stiffness and gap."""
 LARGEST_TURN_PER_ROW = 0.01
 """Of a turn, from row to row: 3.6°, far beyond the twist of any gear that is locked, and of its noise."""
 

@@ -7,7 +7,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 
 PARTS = 12
 """Of a cycle: in so small a part a branch is a parabola but for a thousandth of its twist."""
@@ -56,6 +56,6 @@ def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
         coefficients = np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0]
         fitted = basis @ coefficients
         off = np.abs(y - fitted)
-        scale = SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC
+        scale = robust_std(off) + LEAST_ANGLE_ARCSEC
         weight = 1 / np.maximum(1, off / (3 * scale))
     return fitted

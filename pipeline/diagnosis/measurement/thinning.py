@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
 from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 
 MOST_FIT_ROWS = 6000
 """A design matrix of 600 columns then takes 14 MB in float32."""
@@ -172,7 +172,7 @@ def _off_their_neighbours(values: np.ndarray) -> np.ndarray:
 def _beyond_scatter(angle: np.ndarray) -> np.ndarray:
     """Which differences of angles lie SPIKE deviations from their median, or more."""
     off = np.abs(angle - np.median(angle))
-    return np.asarray(off > SPIKE * (SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC))
+    return np.asarray(off > SPIKE * (robust_std(off) + LEAST_ANGLE_ARCSEC))
 
 
 def _averaged(

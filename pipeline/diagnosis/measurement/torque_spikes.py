@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.outliers import LONGEST_OUTLIER
 from flexspline.pipeline.diagnosis.measurement.runs import runs
-from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
+from flexspline.pipeline.diagnosis.robust import robust_std
 
 SPIKE_SIGMAS, SPIKE_SHARE, SPIKE_STEPS = 10.0, 0.05, 4.0
 """What a torque must stand out by, to be no torque where the angle does not follow: in deviations of the rows
@@ -30,7 +30,7 @@ def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
     if len(torque) <= 2 * ROWS_BESIDE:
         return np.zeros(len(torque), bool)
     off, moved = (values - _median_about(values) for values in (torque, angle))
-    sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
+    sigma = robust_std(off)
     largest = np.quantile(np.abs(torque), LARGEST_QUANTILE)
     far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
     least_moved = LEAST_TWIST_SHARE * _softness(torque, angle) * np.abs(off)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
+from flexspline.pipeline.diagnosis.robust import robust_std
 
 FEWEST_FOR_NOISE = 8
 """Readings; of fewer a median of third differences rests on less than five."""
@@ -28,10 +28,10 @@ def white_noise(readings: np.ndarray, t: np.ndarray) -> float | None:
     span = np.maximum(t[2:] - t[:-2], ABOVE_ZERO)
     share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
     off = readings[1:-1] - (1 - share) * readings[:-2] - share * readings[2:]
-    line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA
+    line = robust_std(off / np.sqrt(1 + share**2 + (1 - share) ** 2))
     # 20 = 1² + 3² + 3² + 1²
-    even = np.median(np.abs(np.diff(readings, 3))) / MAD_PER_SIGMA / np.sqrt(20)
-    timed = np.median(np.abs(_off_parabola(readings, t))) / MAD_PER_SIGMA
+    even = robust_std(np.diff(readings, 3)) / np.sqrt(20)
+    timed = robust_std(_off_parabola(readings, t))
     first = np.quantile(np.abs(np.diff(readings)), 0.2) / FIFTH_PER_SIGMA / np.sqrt(2)
     return float(min(line, even, timed, first))
 

@@ -28,6 +28,7 @@ from flexspline.pipeline.diagnosis.decision import (
     is_rival,
     is_significant,
     probability,
+    weights,
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.robust import rms
@@ -123,8 +124,7 @@ def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, 
         f for f in race.fits if f.named == best.named and best.score - f.score < OVER_NULL_NATS
     ]
     each = [_value(race, f, cause) for f in alike]
-    weight = np.exp([f.score - best.score for f in alike])
-    weight /= weight.sum()
+    weight = weights([f.score for f in alike])
     value, std = _value(race, best, cause)
     spread = float(np.sqrt(weight @ (np.array([v for v, _ in each]) - value) ** 2))
     return value, float(np.hypot(std, spread))

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_ban
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import Tried
 from flexspline.pipeline.diagnosis.sweep.crossing_likelihood import LEAST_WIDTH
 from flexspline.pipeline.diagnosis.sweep.offset_race import SPIKE_NATS
@@ -117,5 +117,5 @@ class CrossedRecord:
             off < ROBUST_DEVIATIONS, off**2, 2 * ROBUST_DEVIATIONS * off - ROBUST_DEVIATIONS**2
         )
         cost = np.minimum(huber, 2 * SPIKE_NATS) / 2 + np.log(deviation)
-        left = SIGMA_PER_MAD * float(np.median(off)) * self.noise_arcsec
+        left = robust_std(off) * self.noise_arcsec
         return CrossingFit(tried, -float(cost.sum()), left)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 
 MISFIT_RATIO = 1.5
 """Times the scatter beside the gap: noise is at least this, where the model misses more than noise."""
@@ -113,7 +113,7 @@ class CrossingRows:
         """What the model misses near zero is not evidence of a place: the noise is at least that."""
         order = np.argsort(torque_Nm)
         beside = np.abs(np.abs(left_arcsec) - gap_arcsec / 2)
-        noise = max(noise_arcsec, MISFIT_RATIO * SIGMA_PER_MAD * float(np.median(beside)))
+        noise = max(noise_arcsec, MISFIT_RATIO * robust_std(beside))
         return cls(torque_Nm[order], left_arcsec[order], gap_arcsec[order], noise, width_Nm)
 
     def log_likelihood(self, places_Nm: np.ndarray, blurs: tuple[Blur, ...]) -> np.ndarray:

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
+from flexspline.pipeline.diagnosis.decision import weights
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std, width_share_std
@@ -46,8 +47,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     )[:MOST_SHAPES]
     nats = _shape_nats(identified)
     alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
-    weight = np.exp([(c.score - identified.best.score) / nats for c in alike])
-    weight /= weight.sum()
+    weight = weights([c.score / nats for c in alike])
     each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
     doubt = identified.size_doubt
     best = doubt.magnitude

@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.rough_residual import rough_residual
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 from flexspline.pipeline.diagnosis.sweep.regressors import (
     DesignMatrix,
     FrictionAhead,
@@ -103,7 +103,7 @@ def prepare(
     if int(kept.sum()) < wanted:
         raise TooFewRowsError(int(kept.sum()), wanted)
     rough = rough_residual(target, history, kept, per_cycle)
-    spread = SIGMA_PER_MAD * float(np.median(np.abs(rough))) + ROUNDING_ARCSEC
+    spread = robust_std(rough) + ROUNDING_ARCSEC
     outlier = np.zeros(len(kept), bool)
     outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
     good = ~outlier[kept]

@@ -23,7 +23,7 @@ from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 from flexspline.pipeline.diagnosis.sweep.evidence import (
     GaussianEvidence,
     gaussian_evidence,
@@ -235,7 +235,7 @@ def _evidence(prepared: PreparedSweep) -> GaussianEvidence:
 def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> PreparedSweep:
     history = prepared.rig.history
     inside = naming_rows(history, prepared.band_Nm)
-    spread = SIGMA_PER_MAD * float(np.median(np.abs(left[inside & ~prepared.outlier])))
+    spread = robust_std(left[inside & ~prepared.outlier])
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(
         left[inside], history.rows(inside), spread + ROUNDING_ARCSEC

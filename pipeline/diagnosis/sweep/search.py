@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
+from math import log
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
 from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, Regressors
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
-NAMED_COST = 4.5
-"""Nats against each cause named: one of thirteen (2.6), and odds of 1 to 7 that one acts at all (1.9)."""
+NAMED_COST = log(len(known_causes())) + log(7)
+"""Nats against each cause named: it is one of thirteen (2.6), and the odds that one acts at all are 1 to 7
+(1.9), by judgement."""
 NUISANCE_COST = 9.0
 """Against each nuisance term: at equal evidence a named cause is preferred."""
 ELEMENT_COST = 1.0

@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC, RO
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD, rms
+from flexspline.pipeline.diagnosis.robust import rms, robust_std
 
 MOST_SIZE_ROWS = 20_000
 """A size needs no more; every n-th row of longer records is taken."""
@@ -90,7 +90,7 @@ def sweep_size(
         if found is None:
             return None
         (c, g), cov, residual = found
-        scale = SIGMA_PER_MAD * float(np.median(np.abs(residual)))
+        scale = robust_std(residual)
         good[good] = ~isolated_outliers(residual, h.rows(good), scale + ROUNDING_ARCSEC)
     extent = float(np.ptp(h.torque_Nm))
     both = float(h.torque_Nm.min()) < 0 < float(h.torque_Nm.max())

@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import robust_std
 from flexspline.pipeline.diagnosis.sweep.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 
@@ -136,7 +136,7 @@ def step_misfit(
     for _ in range(2):
         found = weighted_fit(basis, angle_arcsec[rows], weight)
         left = angle_arcsec[rows] - basis @ found
-        scale = SIGMA_PER_MAD * np.median(np.abs(left)) + ROUNDING_ARCSEC
+        scale = robust_std(left) + ROUNDING_ARCSEC
         weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
     if found[-1] < least * gap_arcsec:
         return np.inf

@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.holds import holds
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.record import FEWEST_SWEEP_ROWS, Sweep
 from flexspline.pipeline.diagnosis.shortage import ConstantTorque, FewTorques
 
 CONSTANT_SHARE = 0.1
 """Torque that varies by less than this share of its largest value is constant."""
-FEWEST_TORQUES = 4
-"""One more than zero, stiffness and gap."""
 FEWEST_CREEP_HOLDS = 3
 """Up, back, and once more: what grows in one hold only may be drift."""
 
@@ -23,8 +21,8 @@ def too_few_torques(sweep: Sweep) -> ConstantTorque | FewTorques | None:
     if largest == 0 or np.ptp(torque) < CONSTANT_SHARE * largest:
         return ConstantTorque()
     different = len(np.unique(np.round(torque / largest, 2)))
-    if different < FEWEST_TORQUES and not _is_creep_test(sweep):
-        return FewTorques(FEWEST_TORQUES)
+    if different < FEWEST_SWEEP_ROWS and not _is_creep_test(sweep):
+        return FewTorques(FEWEST_SWEEP_ROWS)
     return None
 
 

@@ -19,8 +19,8 @@ from math import pi
 import numpy as np
 import pytest
 from example_files import EXAMPLES
+from lobe_stiffness import lobe_stiffness
 
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.solid.cyclic import half_repeat, repeats_of
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, ellipse, lobes
