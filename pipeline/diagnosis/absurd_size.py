@@ -98,7 +98,8 @@ def times(ratio: float) -> str:
 
 
 def _asked(far: FarSize) -> str:
-    asked = [f"is {one.head} in {_instead(one)}" for one in far.suspects]
+    asked = ["are the columns of torque and angle interchanged"] * far.interchanged
+    asked += [f"is {one.head} in {_instead(one)}" for one in far.suspects]
     if not far.connected:
         asked.append("was the channel of the angle connected")
     return ": " + (", or ".join(asked) or "are the units of angle and torque right") + "?"

@@ -109,13 +109,23 @@ def slope_beyond(size: SweepSize, limit: float) -> bool:
 
 def far_slope(size: SweepSize, sweep: Sweep) -> FarSlope:
     """How much stiffer or softer the gear would be, and why that may seem so."""
-    return FarSlope(size.compliance, suspects(size, sweep), abs(size.chord) >= NO_SIGNAL_SHARE)
+    connected = abs(size.chord) >= NO_SIGNAL_SHARE
+    return FarSlope(size.compliance, suspects(size, sweep), connected, _interchanged(size, sweep))
 
 
 def _far_twist(ratio: float, size: SweepSize, sweep: Sweep) -> FarTwist:
     column = sweep.read_as.column("angle")
     head = column.head if column else ""
-    return FarTwist(ratio, suspects(size, sweep), abs(size.chord) >= NO_SIGNAL_SHARE, head)
+    connected = abs(size.chord) >= NO_SIGNAL_SHARE
+    return FarTwist(ratio, suspects(size, sweep), connected, _interchanged(size, sweep), head)
+
+
+def _interchanged(size: SweepSize, sweep: Sweep) -> bool:
+    """Whether the twist is the simulated one, within `LIKELY_RATIO`, where each reading is taken for the other."""
+    torques = float(np.ptp(sweep.history.torque_Nm))
+    elastic = (size.simulated_arcsec - size.simulated_gap_arcsec) * size.span_arcsec / torques
+    ratio = torques / max(elastic + size.simulated_gap_arcsec, LEAST_RATIO)
+    return 1 / LIKELY_RATIO < ratio < LIKELY_RATIO
 
 
 def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:

@@ -87,12 +87,14 @@ class UnitSuspect:
 class FarSize:
     """Measured over simulated, far from 1, and what may be wrong with the reading, the likeliest first.
 
-    `connected` : whether the angle moves enough for its channel to be connected.
+    `connected` : whether the angle moves enough for its channel to be connected. `interchanged` : whether torque
+    and angle, each taken for the other, have the simulated size.
     """
 
     ratio: float
     suspects: tuple[UnitSuspect, ...]
     connected: bool
+    interchanged: bool = False
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,17 @@ def test_records_with_effects_of_real_size_are_not_refused(number: int, tmp_path
 
 
 @pytest.mark.usefixtures("causes_only")
+def test_interchanged_columns_are_asked_for(tmp_path: Path) -> None:
+    """Torque read as the angle and the angle as torque: a gear of the simulated size, the other way."""
+    case = CLEAN[0]
+    interchanged = case.csv.replace("torque_Nm", "?").replace("angle_arcsec", "torque_Nm")
+    with pytest.raises(MeasurementError, match="columns of torque and angle interchanged"):
+        checked(case, interchanged.replace("?", "angle_arcsec"), tmp_path)
+    with pytest.raises(MeasurementError) as caught:
+        checked(case, mislabelled(case, Fault("angle_arcsec", float, "angle_deg")), tmp_path)
+    assert "interchanged" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.long] * (n != "degrees as mrad")) for n in STRANGE]
 )
