@@ -121,7 +121,7 @@ def _far_twist(ratio: float, size: SweepSize, sweep: Sweep) -> FarTwist:
 
 
 def _interchanged(size: SweepSize, sweep: Sweep) -> bool:
-    """Whether the twist is the simulated one, within `LIKELY_RATIO`, where each reading is taken for the other."""
+    """Whether the twist is as simulated, within `LIKELY_RATIO`, where each reading is the other."""
     torques = float(np.ptp(sweep.history.torque_Nm))
     elastic = (size.simulated_arcsec - size.simulated_gap_arcsec) * size.span_arcsec / torques
     ratio = torques / max(elastic + size.simulated_gap_arcsec, LEAST_RATIO)

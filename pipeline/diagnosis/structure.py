@@ -87,8 +87,8 @@ class UnitSuspect:
 class FarSize:
     """Measured over simulated, far from 1, and what may be wrong with the reading, the likeliest first.
 
-    `connected` : whether the angle moves enough for its channel to be connected. `interchanged` : whether torque
-    and angle, each taken for the other, have the simulated size.
+    `connected` : whether the angle moves enough for its channel to be connected. `interchanged` : whether
+    torque and angle, each taken for the other, have the simulated size.
     """
 
     ratio: float

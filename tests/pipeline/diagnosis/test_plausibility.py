@@ -65,7 +65,7 @@ def test_interchanged_columns_are_asked_for(tmp_path: Path) -> None:
         checked(case, interchanged.replace("?", "angle_arcsec"), tmp_path)
     with pytest.raises(MeasurementError) as caught:
         checked(case, mislabelled(case, Fault("angle_arcsec", float, "angle_deg")), tmp_path)
-    assert "interchanged" not in str(caught.value)
+    assert "columns of torque" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
