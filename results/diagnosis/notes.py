@@ -157,7 +157,7 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
 def _rounding_notes(explained: ExplainedSweep) -> list[str]:
     """That a reading is coarse, where its rounding is more than the noise."""
     found = []
-    angle = rounding_of_angle(explained.prepared)
+    angle = rounding_of_angle(explained.prepared, explained.identified.fit)
     if angle.is_seen:
         found.append(
             f"the angle is read in steps of {angle.step:.3g} arcsec: what rounding leaves, "

@@ -32,11 +32,13 @@ class Averaging:
 
     within : sums over the rows averaged of da², da·dT and dT², the distances of angle [arcsec] and torque
         [N·m] from their means.
+    encoder_step_arcsec : of the readings, 0 where there is none: means have none.
     """
 
     rows_read: int
     rows_averaged: int
     within: tuple[float, float, float]
+    encoder_step_arcsec: float
 
     def variance_within(self, compliance: float) -> float:
         """[arcsec²] of a row's angle about its mean's, torque as read taken off; arcsec per N·m."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.corners import corners_of
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
@@ -205,7 +206,8 @@ def _averaged(
     )  # fmt: skip
     return replace(
         sweep, history=history, angle_arcsec=angle, line=sweep.line[first],
-        averaging=Averaging(len(sweep), len(rows), within), went_to=_went_to(sweep, groups),
+        averaging=Averaging(len(sweep), len(rows), within, encoder_step(sweep.angle_arcsec)),
+        went_to=_went_to(sweep, groups),
     )  # fmt: skip
 
 

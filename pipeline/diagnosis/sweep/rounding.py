@@ -38,15 +38,21 @@ class Rounding:
 
 def rounding_left_arcsec(prepared: PreparedSweep, fit: SweepFit) -> float:
     """Rms [arcsec] by both readings: no effect of angle or torque can be told below it."""
-    angle, torque = rounding_of_angle(prepared), rounding_of_torque(prepared, fit)
+    angle, torque = rounding_of_angle(prepared, fit), rounding_of_torque(prepared, fit)
     return hypot(angle.left_arcsec, torque.left_arcsec)
 
 
-def rounding_of_angle(prepared: PreparedSweep) -> Rounding:
-    """By the encoder's steps: a saw-tooth over the angle, the same at every pass."""
-    angle = prepared.sweep.angle_arcsec
-    step = encoder_step(angle)
-    left = sqrt(undithered(prepared.noise.white, step))
+def rounding_of_angle(prepared: PreparedSweep, fit: SweepFit) -> Rounding:
+    """By the encoder's steps: a saw-tooth over the angle, the same at every pass.
+
+    Means of a programme in step with the encoder keep all of it.
+    """
+    angle, averaging = prepared.sweep.angle_arcsec, prepared.sweep.averaging
+    step, variance = encoder_step(angle), prepared.noise.white
+    if averaging is not None:
+        step = averaging.encoder_step_arcsec
+        variance = averaging.variance_within(fit.measured_rig().compliance)
+    left = sqrt(undithered(variance, step))
     is_steps = step >= FINEST_ENCODER * (angle.max() - angle.min())
     return Rounding(step, left, is_steps and _is_seen(left, prepared))
 
