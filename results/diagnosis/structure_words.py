@@ -107,9 +107,9 @@ def words_of(structure: Structure, channel: str) -> str:
         case Slip():
             return (
                 f"the output slips: each time torque passes {percent(LOADED_SHARE)} of its largest value and "
-                f"comes back, the angle has gone on by {structure.slip_arcsec:.0f} arcsec, "
+                f"comes back, the angle has advanced by {structure.slip_arcsec:.0f} arcsec, "
                 f"{structure.times:.0f} times the elastic twist there; a lock, a clamp or a friction joint "
-                "gives way"
+                "slips"
             )
         case FarSlope():
             return slope_words(structure)
