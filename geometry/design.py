@@ -61,7 +61,7 @@ class Gear(DesignTable):
     )
     working_depth_mm: Length | None = Field(
         default=None,
-        description=f"mm, withdrawal at which teeth part; default {DEEPEST:g} m(z2 - z1)/2",
+        description=f"mm, radial withdrawal at which teeth disengage; default {DEEPEST:g} m(z2 - z1)/2",
     )
     circular_spline_diameter_mm: Length | None = Field(
         default=None, description=f"mm, outside of its rim; default {OUTER_SHARE:g} pitch diameters"

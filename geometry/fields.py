@@ -38,6 +38,7 @@ LengthOrZero = Annotated[
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False, description="%")]
 """Of a standard deviation: beyond 100 % the quantity would be known no better than its sign."""
 MM_PER_UM, UM_PER_MM = 1e-3, 1e3
+"""[mm/µm], [µm/mm]: dimensions are in mm, clearances in µm."""
 Micrometre = Annotated[float, within(ranges.CLEARANCE_um, "µm")]
 BoltCount = Annotated[int, Field(ge=0, le=200)]
 """The examples have 6 and 12; the end keeps a slip of the keyboard from asking for thousands."""

@@ -110,5 +110,5 @@ def _unknown(location: Location, kind: str | None) -> str:
                 own = [k for k in known if k not in theirs]
                 return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
     if not table and key == "design":
-        return "names a design: the file is a study, which `flexspline study` takes"
+        return "is a key of a study file: run `flexspline study` on it"
     return unknown_key(key, known, f"[{dotted(table)}]" if table else "the design")

@@ -203,5 +203,7 @@ def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
     half = twisted.stiffness.half_width
     if half <= tolerance:
         return MET
-    words = f"it is of one mesh, whose own K is known to ± {percent(half)}, not to ± {percent(tolerance)}"
-    return Shortfall(words)
+    own, asked = percent(half), percent(tolerance)
+    return Shortfall(
+        f"it is computed on one mesh, whose own K is known to ± {own} where ± {asked} is asked"
+    )

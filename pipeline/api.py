@@ -72,7 +72,7 @@ def stiffness(
     if case == "uniform":
         return part_stiffness(model)
     if part == "shaft":
-        raise DesignError("case", case, 'is of the flexspline; the shaft has "uniform" only')
+        raise DesignError("case", case, 'applies to the flexspline; the shaft has "uniform" only')
     return rim_stiffness(model, case)
 
 

@@ -50,7 +50,7 @@ class Stiffnesses:
         NotFoundError : it failed, or nobody asked for it.
         """
         if name not in self.solved:
-            raise NotFoundError(name, str(self.missing.get(name, "nobody asked for it")), self)
+            raise NotFoundError(name, str(self.missing.get(name, "it was not requested")), self)
         return self.solved[name]
 
     @property

@@ -50,8 +50,8 @@ def _warning(warning: GearWarning) -> str:
         case PressingFlanks(force):
             return (
                 f"teeth press on both flanks without torque, up to {_rounded(force)} N each: "
-                f"{_why_pressing(warning)}. Nothing is free then: the clearances in the sum of four "
-                "terms are not there"
+                f"{_why_pressing(warning)}. The gear then has no free play, and the clearance "
+                "terms of the backlash sum do not apply"
             )
         case CuttingFlanks(shape, start, overlap, most, depth):
             said = (

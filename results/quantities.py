@@ -42,7 +42,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "K_b",
         5,
         "K_b",
-        "Flexspline stiffness, even torque on the ring (uniform)",
+        "Flexspline stiffness, uniform torque on the ring",
         "flexspline, uniform",
         "flexspline stiffness (uniform)",
         "ring turned rigidly, mount held",

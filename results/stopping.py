@@ -44,7 +44,7 @@ def _listen(heard: socket.socket, ended: threading.Event) -> None:
         if not ended.wait(AT_ONCE_S):
             with suppress(OSError):  # whoever listened has gone
                 print(
-                    "flexspline: stopping: the step under way ends first",
+                    "flexspline: stopping after the current step",
                     file=sys.stderr,
                     flush=True,
                 )

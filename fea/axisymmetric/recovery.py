@@ -16,7 +16,9 @@ from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 
 RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
+"""Index of a stress component."""
 DIRECT = (RR, THETA_THETA, ZZ)
+"""The normal stresses, whose sum is the trace; a shear stress counts twice in the energy."""
 Parts = Mapping[int, np.ndarray]
 """Stresses by their number, those that are not 0: the first four vary as cos nφ, the others as sin nφ."""
 

@@ -35,10 +35,10 @@ def _ellipticity(apart: float) -> float:
         m = 1 - k**-2
         return ((k * k + 1) * ellipe(m) - 2 * ellipk(m)) / ((k * k - 1) * ellipe(m)) - apart
 
-    if (
-        apart < 1e-6
-    ):  # a circle: the formula is 0/0 there, and the shape factor differs from 1 by apart²
+    # a circle: the formula is 0/0 there, and the shape factor differs from 1 by apart²
+    if apart < 1e-6:
         return 1.0
+    # from less than that a/b to one that no ball on a race has
     return float(brentq(excess, 1 + 1e-7, 1e4))
 
 

@@ -75,6 +75,7 @@ def clamped(
     """Of a tooth held at its root, times its width [mm²/N]: its middle's way at the height of the load."""
     flat = MeshTri.init_tensor(np.linspace(-1, 1, ACROSS + 1), np.linspace(0, lever + tip, UP + 1))
     half = thickness / 2 + (lever - flat.p[1]) * tan(pressure_angle)
+    # 1e-9: the nodes of an edge lie on it but for rounding
     mesh = MeshTri(np.stack([flat.p[0] * half, flat.p[1]]), flat.t).with_boundaries({
         "root": lambda x: x[1] < 1e-9 * lever, "flank": flat.facets_satisfying(lambda x: x[0] > 1 - 1e-9)
     })  # fmt: skip

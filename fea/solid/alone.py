@@ -11,6 +11,7 @@ LARGE = 30_000
 """Elements: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5 GB of factors in single
 precision. Two of 30 688 and 35 016 at once made 2.45 GB of a command with factors in double."""
 _TURN = Turn(0)
+"""Place 0 of the locks, which is its own: the cache takes those from 1 on (`pipeline/cache.py`)."""
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from flexspline.fea.mkl import address, mkl
 AS_IT_IS, GENERAL, ROWS_FIRST = 10, 20, 101
 """oneMKL's words: not transposed; of no special form; blocks row by row."""
 NUMBERS_FROM_0 = 0
+"""oneMKL's SPARSE_INDEX_BASE_ZERO: rows and columns are counted from 0, as in scipy."""
 
 
 class _Form(ctypes.Structure):

@@ -18,6 +18,7 @@ from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
+"""Index of a displacement component at a node, in cylindrical coordinates."""
 PLANES = (SYMMETRY_START, SYMMETRY_END)
 
 

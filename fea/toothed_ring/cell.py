@@ -35,6 +35,7 @@ DEGREE = 6
 LARGEST_RESIDUAL = 1e-8
 """Of ‖Ku − f‖/‖f‖: far below the error of the mesh."""
 RADIAL, TANGENTIAL = 0, 1
+"""Index of a displacement component at a node."""
 
 
 def _around(f: Any, w: Any) -> Any:

@@ -54,11 +54,11 @@ def absurd_words(absurd: Absurd, given: Collection[str] = ()) -> str:
         case Still():
             return "the angle is the same in all rows: was its channel connected?"
         case Turned("sweep"):
-            return "the angle falls where torque rises: is the sign of angle or torque turned?"
+            return "the angle falls where torque rises: is the sign of angle or torque reversed?"
         case Turned():
-            return "angle_plus lies below angle_minus: are the two columns, or the sign, turned?"
+            return "angle_plus lies below angle_minus: are the two columns swapped, or is the sign reversed?"
         case FarTwist():
-            turned = " with its sign turned" if absurd.ratio < 0 else ""
+            turned = " with its sign reversed" if absurd.ratio < 0 else ""
             twist = (
                 f"{absurd.head or 'the angle'} is {times(absurd.ratio)} the simulated twist{turned}"
             )

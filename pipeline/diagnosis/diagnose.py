@@ -164,7 +164,9 @@ def _along_gear_curve(straight: Prediction, chain: Chain, measurement: Measureme
     """The whole gear's curve in place of the straight line; errors as `diagnose_measurement`."""
     if not isinstance(measurement, Sweep):
         raise MeasurementError(
-            measurement.path, None, "is not a torque sweep; only that is held against the gear"
+            measurement.path,
+            None,
+            "is not a torque sweep; only a sweep can be compared with the gear",
         )
     largest = measurement.history.largest_Nm
     if largest == 0:

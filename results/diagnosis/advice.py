@@ -124,7 +124,9 @@ def _of_sweep(after: NextMeasurement) -> str:
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
         if after.vary != cause.vary and after.doing == LARGER:
-            return f"the record shows {cause.title} well; how it goes on at other torques: {doing}"
+            return (
+                f"the record determines {cause.title} well; to extend it to other torques: {doing}"
+            )
         return f"to confirm {cause.title}: {doing}"
     titles = _one_from_others(after)
     if after.doing is None or not after.separation:  # nothing was computed

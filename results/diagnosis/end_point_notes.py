@@ -54,7 +54,10 @@ def _limit_note(u: UnitFinding, of: Envelope) -> str:
     )
     doubt = of.design.uncertainty
     if not (doubt.flank_clearance_um or doubt.radial_clearance_um):
-        return f"unit {u.unit}: the design states no uncertainty of its clearances, so none may explain it"
+        return (
+            f"unit {u.unit}: the design states no uncertainty of its clearances, so they cannot explain the "
+            "deviation"
+        )
     if u.z < 0 or not isfinite(of.play_end_arcsec):
         return f"unit {u.unit}: {least}"
     limit = of.limit_arcsec()

@@ -161,14 +161,14 @@ def _rounding_notes(explained: ExplainedSweep) -> list[str]:
     if angle.is_seen:
         found.append(
             f"the angle is read in steps of {angle.step:.3g} arcsec: what rounding leaves, "
-            f"{angle.left_arcsec:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or "
-            "a finer encoder, would show less of it"
+            f"{angle.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the angle; "
+            "more noise, or a finer encoder, would show less of it"
         )
     torque = rounding_of_torque(explained.prepared, explained.identified.fit)
     if torque.is_seen:
         found.append(
             f"the torque is read in steps of {torque.step:.3g} N·m: what rounding leaves, "
-            f"{torque.left_arcsec:.2g} arcsec rms, cannot be told from an effect of the torque"
+            f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
     return found
 

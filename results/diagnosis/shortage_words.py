@@ -46,7 +46,7 @@ def _leaping(shortage: Leaping) -> str:
     where = f"{low:.3g} to {high:.3g}".replace("-", "−")
     usual = figures_text(leaps.usual_arcsec, 2)
     return (
-        f"the angle leaps {leaps.count} times with the torque, by {least:.0f} to {most:.0f} arcsec at "
-        f"{where} N·m, and moves by {usual} arcsec from row to row else: something sticks and breaks away; "
+        f"the angle jumps {leaps.count} times while the torque changes, by {least:.0f} to {most:.0f} arcsec "
+        f"at {where} N·m, and otherwise by {usual} arcsec from row to row: this indicates stick-slip; "
         f"the simulated twist is {shortage.twist_arcsec:.0f} arcsec"
     )

@@ -35,25 +35,25 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("softening", "torque_Nm"): "stiffness that falls with load",
     ("uneven_loop", "direction"): "a loop that differs between the two sides",
     ("leading", "direction"): "output leads torque",
-    ("gives_way", "torque_amplitude"): "a lock or clamp that gives way under torque",
+    ("gives_way", "torque_amplitude"): "a lock or clamp that slips under torque",
     ("rings", "torque_rate"): "ringing after sudden changes of torque",
     ("wave", "time_s"): "a wave in time",
     ("wave", "row"): "a wave along the record",
     ("step", "time_s"): "a step in time",
     ("step", "row"): "a step along the record",
-    ("own_zero", "cycle"): "a zero of its own in each cycle",
-    ("own_zero", "input_angle_deg"): "a zero of its own at each position",
-    ("own_stiffness", "cycle"): "a stiffness of its own in each cycle",
-    ("own_stiffness", "input_angle_deg"): "a stiffness of its own at each position",
+    ("own_zero", "cycle"): "a separate zero offset in each cycle",
+    ("own_zero", "input_angle_deg"): "a separate zero offset at each position",
+    ("own_stiffness", "cycle"): "a separate stiffness in each cycle",
+    ("own_stiffness", "input_angle_deg"): "a separate stiffness at each position",
     ("own_stiffness", "unit"): "a gain",
-    ("own_gap", "cycle"): "a gap of its own in each cycle",
-    ("own_gap", "input_angle_deg"): "a gap of its own at each position",
+    ("own_gap", "cycle"): "a separate gap in each cycle",
+    ("own_gap", "input_angle_deg"): "a separate gap at each position",
     ("own_gap", "unit"): "a gap",
-    ("changing_zero", "temperature_C"): "a zero that changes with temperature",
+    ("changing_zero", "temperature_C"): "a zero offset that changes with temperature",
     (
         "changing_zero",
         "input_angle_deg",
-    ): "a zero that changes along the wave generator's way, as with an "
+    ): "a zero offset that changes with the wave generator's angle, as with an "
     "eccentric encoder at the output",
     ("changing_stiffness", "time_s"): "a stiffness that changes with time",
     ("changing_stiffness", "row"): "a stiffness that changes along the record",
@@ -68,8 +68,8 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
 }
 """By kind and channel."""
 ANYWHERE: Mapping[FormKind, str] = {
-    "jumps": "jumps with the torque's motion; something sticks and breaks away, or friction has another "
-    "form",
+    "jumps": "jumps while the torque changes; stick-slip, or friction that the model does not "
+    "describe",
     "comes_back": "a misfit at the same torques in every cycle",
     "remainder": "what the best model leaves",
     "slow_noise": "noise that wanders slowly, too large to compare with a simulation",
@@ -107,9 +107,9 @@ def words_of(structure: Structure, channel: str) -> str:
         case Slip():
             return (
                 f"the output slips: each time torque passes {percent(LOADED_SHARE)} of its largest value and "
-                f"comes back, the angle has gone on by {structure.slip_arcsec:.0f} arcsec, "
+                f"comes back, the angle has advanced by {structure.slip_arcsec:.0f} arcsec, "
                 f"{structure.times:.0f} times the elastic twist there; a lock, a clamp or a friction joint "
-                "gives way"
+                "slips"
             )
         case FarSlope():
             return slope_words(structure)
@@ -151,7 +151,7 @@ def _backward(loop: BackwardLoop) -> str:
         f"cannot; most likely {_likely(loop)}"
     )
     others = " and ".join(UNRECORDED[channel] for channel in loop.unrecorded)
-    return f"{said}. Not recorded, and able to look like it: {others}" if others else said
+    return f"{said}. Other possible causes, not recorded: {others}" if others else said
 
 
 def _likely(loop: BackwardLoop) -> str:

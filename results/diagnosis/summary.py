@@ -158,12 +158,12 @@ def _said(cause: NamedCause) -> str:
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
     told = [
-        f"{cause_title(c)} cannot be told from {' or '.join(map(title_of, c.alternatives))}"
+        f"{cause_title(c)} cannot be distinguished from {' or '.join(map(title_of, c.alternatives))}"
         for c in causes
         if c.alternatives
     ]
     told += [
-        f"{cause_title(c)}, {magnitude_words(c)}, is only a suspicion"
+        f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
         if not is_significant(c)
     ]
@@ -175,11 +175,11 @@ def _beside(causes: Sequence[NamedCause]) -> str:
     told = [
         f"{_said(c)} ({sure_words(c)})" for c in causes if not c.alternatives and is_significant(c)
     ]
-    return f" Beside it: {'; '.join(told)}." if told else ""
+    return f" Also identified: {'; '.join(told)}." if told else ""
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
-    known = f" Beside it: {_listed(outcome.causes)}." if outcome.causes else ""
+    known = f" Also identified: {_listed(outcome.causes)}." if outcome.causes else ""
     if specimens:
         what = "; ".join(map(structure_words, outcome.unexplained))
         return f"There is structure that no known cause explains: {what}.{known}"
@@ -196,7 +196,11 @@ def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis)
     first = outcome.causes[0]
     title = cause_title(first)
     others = ", ".join(map(title_of, first.alternatives))
-    rival = f"{title} cannot be told from {others}" if others else f"{title} is only a suspicion"
+    rival = (
+        f"{title} cannot be distinguished from {others}"
+        if others
+        else f"{title} is suspected but not significant"
+    )
     beyond = [u.unit for u in analysis.units if not u.within]
     named = listed(beyond, "units")
     who = f"Unit {named} lies" if len(beyond) == 1 else f"Units {named} lie"

@@ -31,8 +31,8 @@ def lag_notes(identified: Identification) -> list[str]:
 def drift_notes(causes: Iterable[NamedCause]) -> list[str]:
     """That a drift may follow the temperature."""
     return [
-        f"{title_of(c.id)}: time and temperature went together, so a zero that follows the temperature "
-        "explains this record as well"
+        f"{title_of(c.id)}: time and temperature changed together in this record; a zero offset that follows "
+        "the temperature fits it as well"
         for c in causes
         if c.or_temperature
     ]

@@ -17,7 +17,7 @@ from flexspline.results.diagnosis.channels import channel_words
 LEAST_OTHER_WAY = 0.05
 """Of the rows: fewer on one side, or in one direction, are an approach or a turn."""
 WITHOUT = {
-    "time_s": "friction cannot be told from rate dependence, nor drift from wear",
+    "time_s": "friction cannot be distinguished from rate dependence, nor drift from wear",
     "temperature_C": "a gap that changes with it looks like wear or drift",
     "input_angle_deg": "a zero or a stiffness that changes with it looks like scatter between cycles",
 }

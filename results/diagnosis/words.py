@@ -18,7 +18,7 @@ SPECIMENS = {
 VERDICTS = {
     "consistent": "No effect that the simulation leaves out",
     "named": "Causes identified",
-    "ambiguous": "Several causes are possible; these data cannot tell them apart",
+    "ambiguous": "Several causes are possible; these data do not separate them",
     "unknown": "An effect that no known cause explains",
     "insufficient": "Too little data for a verdict",
 }
@@ -37,7 +37,7 @@ def sure_words(cause: NamedCause) -> str:
     # the evidence may be strong that there is an effect, its size nevertheless uncertain
     words = next((words for least, words in EVIDENCE_WORDS if cause.evidence_nats >= least), "weak")
     if cause.or_temperature:
-        words += ", but not of which"
+        words += ", time or temperature undecided"
     known = cause.deviations >= SIZE_KNOWN or _is_wider(cause)  # of a loop that closes at T = 0
     return words if known else f"{words}, size uncertain"
 

@@ -23,11 +23,13 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 1600, 1200
 """Pixels of the sheet: ten per mm where it is printed 160 mm wide."""
 MAIN = (860, 950)
+"""Pixels of the large view, width and height."""
 INSET, LARGE_INSET = (440, 480), (600, 640)
-"""Pixels of the views, width and height; the large inset goes where there is no colour bar."""
+"""Pixels of the small views, width and height; the large inset goes where there is no colour bar."""
 _MAIN_AT, _INSET_AT = (40, 116), (930, 176)
+"""Places of the views in pixels, from the left and the lower edge: side by side with a margin."""
 _LABEL_AT = (1150, 850)
-"""Places in pixels, from the left and the lower edge; of the label its middle line."""
+"""Place of the label in pixels, above the middle of the inset; of its middle line."""
 _DPI = 100
 """Pixels per inch: only what turns pixels into matplotlib's inches and points, so any other would do."""
 _TITLE, _SUBTITLE, _TEXT, _NOTE = 50, 38, 44, 34

@@ -28,7 +28,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if found and share > 0:
         yield Paragraph(
             f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
-            "the noise; only chance goes below it."
+            "the noise floor."
         )
 
 

@@ -35,8 +35,9 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         [
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
-            "mounting face is held, so the bolted joint between them counts as rigid. The shaft’s is its "
-            "whole first face." + ("" if content.design.flexspline.inward else OF_A_HAT),
+            "mounting face is held, so the bolted joint between them counts as rigid. The shaft is "
+            "held on the whole of its first face."
+            + ("" if content.design.flexspline.inward else OF_A_HAT),
         ],
         ["Teeth", _teeth(content)],
         [
@@ -53,7 +54,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
                 "Only what the design file states under “uncertainty” enters, as independent and "
                 "normal; the error of the model itself does not."
                 if b.std_arcsec is not None
-                else "State it under “uncertainty”; nothing here says how far the figures may be off."
+                else "State it under “uncertainty”; without it the figures have no uncertainty."
             ),
         ],
         [

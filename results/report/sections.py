@@ -160,8 +160,8 @@ def _which(load_case: str) -> Words:
         for case in ("contact", "unsupported")
     )
     return (
-        *plain("Which stiffness of the flexspline to use: teeth bring the torque in at the two lobes, and "
-               "the rim only rests on the wave generator, so "),
+        *plain("Which stiffness of the flexspline to use: the torque enters through the teeth at the two "
+               "lobes, and the rim may lift off the wave generator, so "),
         *resting,
         *plain(" is nearest to a mounted gear. The uniform case is the stiffest; use it to compare parts. "),
         *free,

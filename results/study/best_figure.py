@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 DRAWN_DESIGNS = 3
 """Designs, a row each."""
 WIDE_IN, SECTION_IN, DETAIL_IN = 7.4, 3.8, (2.4, 0.76)
-"""The figure's width, the sections' width, a detail's width and height."""
+"""Inches: the figure's width, the sections' width, a detail's width and height."""
 ROW_IN, LEFT_IN, FOOT_IN = 0.8, 0.7, 0.7
+"""Inches: what a row needs besides its section, and the margins left and below."""
 DETAIL_WALLS = 3.2
 """A detail's height in wall thicknesses of the thickest wall shown."""
 MARGIN_MM = 0.5

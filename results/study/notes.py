@@ -191,8 +191,9 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
     share = f" and by {100 * HOLE_EFFECT_DRIFT:g} % of the correction" if moved else ""
     ends = list(dict.fromkeys(_percent(100 * (f - 1)) for f in (max(factors), min(factors))))
     yield (
-        f"Holes and keyway change K_e by {' to '.join(ends)}: as much of the flange's and the keyway's own "
-        "compliance as in the design that the study began with (one solid solve). Bounds of K_e are widened "
+        f"Holes and keyway change K_e by {' to '.join(ends)}: the same share of the flange's and the "
+        "keyway's own compliance as in the design that the study began with (one solid solve). Bounds of "
+        "K_e are widened "
         f"by what both solves leave open{share}, and are estimates."
     )
 

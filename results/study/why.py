@@ -108,8 +108,8 @@ def disagreement(check: Check) -> str:
             "the nominal design"
         )
     return (
-        f"they differ by more than {100 * STRESS_SHARE:g} %; without bounds of either: the fast model's "
-        "mesh is the finer one, holes near the peak are in the solid one alone"
+        f"they differ by more than {100 * STRESS_SHARE:g} %; neither has bounds: the fast model's mesh "
+        "is finer, and only the solid model contains holes near the peak"
     )
 
 

@@ -30,7 +30,7 @@ can be run one by one. *Answered*: status 0 and finite figures between their bou
 one line, nothing written. *Failed*: status 1 with its reason in one line. A traceback, a hang, or a
 half-written file fails the test. Long tests come in blocks, a row each; a block without a row has not run
 since it was written. Times are by the clock
-on a machine with several times as much other work as cores.
+on a busy machine: several other processes for each core.
 """
 COLUMNS = "| tried | how many | what came of it | longest |\n|---|---|---|---|"
 NAMES_ORDER = ("answered", "refused", "failed")

@@ -125,7 +125,7 @@ def test_random_damage(name: str, rounds: int, cache: Path, tmp_path: Path, fact
     design = bases.plain(tmp_path) if name == "plain" else bases.CUP
     discarded = damaged(design, cache, tmp_path, rounds)
     assert discarded > rounds / 2
-    outcome = f"{discarded} entries discarded and said; the same figures within {SAME:g}"
+    outcome = f"{discarded} entries discarded with a message; the same figures within {SAME:g}"
     fact(f"cache entries damaged at random, {design.name}", rounds, outcome)
 
 

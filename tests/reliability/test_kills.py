@@ -143,5 +143,5 @@ BLOCKS = [("run", i) for i in range(4)] + [
 @pytest.mark.parametrize(("name", "block"), BLOCKS)
 def test_fifty_kills(name: str, block: int, tmp_path: Path, fact) -> None:
     hits, longest = killed_and_repeated(name, tmp_path, KILLS, 10 + block)
-    outcome = f"{hits} hit it at work; then the right answer, nothing left"
+    outcome = f"{hits} interrupted a running command; the rerun was correct, no files left"
     fact(f"kill -9 at random moments of `{name}`, round {block + 1}", KILLS, outcome, longest)

@@ -17,7 +17,7 @@ def test_a_row_is_renewed_and_the_others_stay() -> None:
             "| from number 1000 | 1000 | all | 1 s |",
         ],
         "Size": ["| a million | 1 | solved | 2.35 s |"],
-        "What was found and mended": rows_of(first)["What was found and mended"],
+        "What was found and fixed": rows_of(first)["What was found and fixed"],
         "What this does not show": [],
     }
     assert page(again, []) == again

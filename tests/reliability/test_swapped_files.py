@@ -17,7 +17,7 @@ STUDY, CUP = EXAMPLES / "studies" / "grid.toml", EXAMPLES / "xb1-40.toml"
 def test_a_study_is_no_design(command: str, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, [command, str(STUDY), "--out", str(tmp_path / "out")])
     assert done.exit_code == 2
-    assert "the file is a study, which `flexspline study` takes" in done.stderr
+    assert "is a key of a study file: run `flexspline study` on it" in done.stderr
     assert list(tmp_path.iterdir()) == []
 
 

@@ -106,7 +106,7 @@ def test_without_k_b_the_rest_is_kept_and_the_status_is_1(command, others, revol
             fail() if driven == "mesh" else solve(outline, material, driven, *rest)
         ),
     )  # fmt: skip
-    name = "Flexspline stiffness, even torque on the ring (uniform)"
+    name = "Flexspline stiffness, uniform torque on the ring"
     answer = asked(command, revolved)
     assert answer.status == 1
     assert answer.mentions(name)

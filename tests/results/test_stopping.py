@@ -25,7 +25,7 @@ def test_one_line_where_the_step_goes_on(
         signal.raise_signal(signal.SIGTERM)
         signal.raise_signal(signal.SIGTERM)
         time.sleep(seconds)
-    assert capsys.readouterr().err.count("flexspline: stopping: ") == lines
+    assert capsys.readouterr().err.count("flexspline: stopping after the current step") == lines
 
 
 def test_nothing_is_said_of_a_command_that_nobody_stops(

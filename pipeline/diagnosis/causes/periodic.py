@@ -15,7 +15,7 @@ USUAL = (1, 2, 4)
 HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), USUAL)
 """Which of them come together."""
 OTHERS = ((3,), (5,), (6,))
-"""Of screws, and of a seat that is not round."""
+"""Per turn, each tried alone: what a ring of as many screws, or a seat that is not round, may give."""
 MOST_SPANNED = 13
 """Positions, at up to which a zero and the harmonics 1 to 6 fit anything; the others are not tried there."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")

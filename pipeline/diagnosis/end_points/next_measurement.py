@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none."""
 PLANNED_ROWS = 64
-"""Of one loop."""
+"""Rows of one loop [1]: sixteen between zero and an end draw its shape. The repeat has as many."""
 TIMES_OVER = PLANNED_ROWS // 2
 """The same two end points, in as many rows."""
 READING_ARCSEC = 1.0

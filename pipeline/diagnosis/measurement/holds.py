@@ -21,7 +21,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import DEADBAND_SIGM
 HOLD_RATE_SHARE = 0.08
 """A hold's torque moves at less than this share of the ramps' rate,"""
 BESIDE_ROWS = 5
-"""Rows that are just before or after."""
+"""Rows just before or after a hold [1], besides those over which a rate is taken: a programme's ramp is
+at its full rate within them, a sine near its peak is not."""
 HOLD_RANGE_SHARE = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
 RANGE_SIGMAS = 6.0

@@ -21,24 +21,26 @@ LBF_N = 0.45359237 * KGF_N
 INCH_M, FOOT_M = 0.0254, 0.3048
 """Exact, the same place."""
 
-# what one of each unit is in ours: N·m, arcsec, s, °C, N·m/rad
 TORQUE: Factors = {
     "Nm": 1.0, "Nmm": 1e-3, "mNm": 1e-3, "Ncm": 1e-2, "kNm": 1e3, "uNm": 1e-6, "daNm": 10.0,
     "in_lbf": LBF_N * INCH_M, "ft_lbf": LBF_N * FOOT_M, "in_ozf": LBF_N / 16 * INCH_M,
     "kgf_m": KGF_N, "kgf_cm": KGF_N * 1e-2, "kgf_mm": KGF_N * 1e-3, "gf_cm": KGF_N * 1e-5,
 }  # fmt: skip
+"""[N·m] in one of each unit."""
 ANGLE: Factors = {
     "arcsec": 1.0, "arcmin": 60.0, "deg": 3600.0, "mdeg": 3.6, "gon": 3240.0,
     "urad": 0.18 * 3.6 / pi, "mrad": 180 * 3.6 / pi, "rad": ARCSEC_PER_RAD,
     "rev": ARCSEC_PER_TURN,
 }  # fmt: skip
+"""[arcsec] in one of each unit; a gon is a 400th of a turn."""
 TIME: Factors = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
+"""[s] in one of each unit."""
 TEMPERATURE: Factors = {"C": 1.0, "K": 1.0}
-"""Of a difference; the two zeros are KELVIN_AT_0_C apart."""
+"""[°C] in one of each unit, of a difference; the two zeros are KELVIN_AT_0_C apart."""
 STIFFNESS: Factors = {
     "Nm_per_rad": 1.0, "kNm_per_rad": 1e3, "Nm_per_deg": 180 / pi, "Nm_per_arcmin": 10800 / pi,
 }  # fmt: skip
-"""A half turn is π rad, 180 deg, 10 800 arcmin."""
+"""[N·m/rad] in one of each unit: a half turn is π rad, 180 deg, 10 800 arcmin."""
 
 
 KELVIN_AT_0_C = 273.15

@@ -29,7 +29,8 @@ TOLERANCE_SHARE = 0.5
 MOST_TOLERANCES = 8.0
 """Beyond, it would be another drawing."""
 UNNAMED_STRUCTURE_SPREAD = 0.07
-"""Of ln K, for structure without a name."""
+"""Standard deviation of ln K [1] for structure without a name, taken: seven times what rigs repeat to, so
+that whatever stands out of the noise fits."""
 CAUSE_KINDS = 4
 """Modulus, dimension, fixture, load zone: even odds."""
 LEAST_rad_per_Nm = 1e-30

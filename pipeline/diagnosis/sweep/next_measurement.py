@@ -26,9 +26,9 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.splits import rate_range, whole_levels
 
 PLANNED_CYCLE_ROWS = 64
-"""Of one triangular cycle."""
+"""Rows of one triangular cycle [1]: sixteen between zero and the largest torque draw its shape."""
 DEFAULT_RAMP_S = 30.0
-"""Time of a ramp where the record has none."""
+"""[s] of a ramp where the record has no times: a usual pace of a rig."""
 WARMER_K = 20.0
 """From 20 to 40 °C; the separation of rivals by this plan grows in proportion to it."""
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)

@@ -22,7 +22,7 @@ has 1.25, one as wide as all of it 2.5."""
 BACK_RATIO = -1.0
 """Of the same: an angle that goes on under torque one way and comes back under the other is a drift."""
 FEWEST_SLIP_ROWS = 3
-"""Of a load: of fewer nothing is seen."""
+"""Rows of a load [1]: one more than an outlier may have (`measurement/outliers.py`)."""
 
 
 def slip_of(history: History, angle_arcsec: np.ndarray) -> Slip | None:

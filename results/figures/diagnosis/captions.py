@@ -36,8 +36,8 @@ CAPTIONS = {
         Where the two ends of each unit lie. The symmetric simulation puts every middle on zero; the
         zero of an angle reading is free, so a middle elsewhere proves nothing alone.""",
     "rivals": """
-        Above, how the odds are shared among the explanations; bars of like length cannot be told
-        apart. Below, where shown, by how much a further measurement would separate
+        Above, how the odds are shared among the explanations; bars of similar length cannot be
+        distinguished. Below, where shown, by how much a further measurement would separate
         them.""",
     "stiffness": """
         Measured stiffness of each specimen as deviation from the simulation. With the cause found,

@@ -58,13 +58,13 @@ def _unnamed(
     """
     size = f"{rms_arcsec:.2g} arcsec rms"
     if owner in known_causes():
-        why = ["a trace of it;", "too little to name"]
+        why = ["smaller than the noise:", "too little to name"]
         if not trace:
             why = ["it fits these rows;", "the verdict says why", "it is not named"]
         return _short(f"Not named: {title_of(owner)}"), (size, *why)
     words = channel_words(channel)
-    lines = (size, f"lies in: {words}", "no known cause explains it")
-    return f"Without a name: structure in {words}", lines
+    lines = (size, f"varies with: {words}", "no known cause explains it")
+    return f"Unexplained: structure in {words}", lines
 
 
 def _channel_of(owner: str) -> str:

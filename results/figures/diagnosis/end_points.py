@@ -118,7 +118,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
             color=PALETTE[2],
             alpha=0.25,
             lw=0,
-            label="most that a stiffer direction can do",
+            label="largest effect of a stiffer direction",
         )
         axes.axvline(0, color=MUTED, lw=0.8)
         for row, unit in enumerate(units):

@@ -51,7 +51,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
         _bare(axes, len(ranked))
         axes.set_xlabel("share of the odds, of those shown, in %", fontsize=9.5)
         axes.set_xlim(0, 118 * share.max())
-        titled(figure, 1 - 0.26 / height, "What could explain it")
+        titled(figure, 1 - 0.26 / height, "Possible causes")
         if plans:
             low = figure.add_axes((0.47, 0.55 / height, 0.43, 0.36 * len(plans) / height))
             sizes = [p.separation for p in plans]
@@ -67,7 +67,11 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             low.set_xlabel(
                 "by how many times the noise the nearest rivals then differ", fontsize=9.5
             )
-            titled(figure, (0.55 + 0.36 * len(plans) + 0.22) / height, "What would tell them apart")
+            titled(
+                figure,
+                (0.55 + 0.36 * len(plans) + 0.22) / height,
+                "Measurements that separate them",
+            )
         save_png(figure, path)
 
 

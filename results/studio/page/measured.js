@@ -76,7 +76,7 @@ export class Measured {
     const list = (title, entries) => (entries.length ? [el("h3", {}, title), el("ul", {}, ...entries.map((line) => el("li", {}, line)))] : []);
     const causes = d.causes.map((c) => el("tr", {}, el("td", {}, c.title), el("td", { class: "value" }, c.magnitude),
       el("td", {}, c.sure), el("td", {}, c.others || "")));
-    const heads = ["Cause", "Magnitude", "How sure", d.causes.some((c) => c.others) ? "Cannot be told from" : ""];
+    const heads = ["Cause", "Magnitude", "How sure", d.causes.some((c) => c.others) ? "Not distinguished from" : ""];
     const keep = files.filter((name) => !name.endsWith(".png"));
     this.findings.replaceChildren(
       el("h2", { id: "verdict" }, d.verdict),

@@ -108,7 +108,7 @@ def test_bad_data_gets_one_line(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("head", "sign", "needle"),
     [
-        ("angle_arcsec", -1, "is the sign of angle or torque turned?"),
+        ("angle_arcsec", -1, "is the sign of angle or torque reversed?"),
         ("angle_deg", 1, "angle_deg is 3"),
     ],
 )

@@ -22,7 +22,7 @@ def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
         NextMeasurement(channel, "find_structure", structure=(UnnamedForm("jumps"),)), "sweep"
     )
     assert said.startswith(
-        f"the structure lies in {channel_words(channel)} (jumps with the torque's motion; "
+        f"the structure lies in {channel_words(channel)} (jumps while the torque changes; "
     )
     assert "_" not in said
 

@@ -37,8 +37,13 @@ def test_an_ambiguous_summary_says_the_sure_causes_too(kind: str) -> None:
     prediction = Prediction(10.0, 0.2, 60.0, 5.0)
     both = DiagnosisOutcome("ambiguous", (FRICTION, WEAR))
     said = summary(Diagnosis(DESIGN, KINDS[kind], prediction, both))
-    assert "cannot tell what: wear (gap that grows from cycle to cycle) cannot be told from" in said
-    assert said.endswith(" Beside it: friction hysteresis, 22.70 ± 0.90 arcsec (beyond doubt).")
+    assert (
+        "cannot tell what: wear (gap that grows from cycle to cycle) cannot be distinguished from"
+        in said
+    )
+    assert said.endswith(
+        " Also identified: friction hysteresis, 22.70 ± 0.90 arcsec (beyond doubt)."
+    )
     alone = DiagnosisOutcome("ambiguous", (WEAR,))
     assert "Beside it" not in summary(Diagnosis(DESIGN, KINDS[kind], prediction, alone))
 

@@ -43,7 +43,7 @@ def test_every_nuisance_term_has_words() -> None:
 
 def test_several_forms_are_said_in_one_order() -> None:
     one, other = UnnamedForm("own_gap"), UnnamedForm("own_zero")
-    both = "a gap of its own in each cycle; a zero of its own in each cycle"
+    both = "a separate gap in each cycle; a separate zero offset in each cycle"
     assert words_of((one, other), "cycle") == words_of((other, one), "cycle") == both
 
 

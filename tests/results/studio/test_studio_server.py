@@ -151,7 +151,7 @@ def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
         time.sleep(after_s)
         os.killpg(studio.pid, signal.SIGINT)  # as a terminal does: to all of them
         _, said = studio.communicate(timeout=60)
-    late = "flexspline: stopping: the step under way ends first\n"  # of a loaded machine
+    late = "flexspline: stopping after the current step\n"  # of a loaded machine
     assert (studio.returncode, said.removesuffix(late)) == (0, "stop with Ctrl-C\n")
 
 

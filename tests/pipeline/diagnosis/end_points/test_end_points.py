@@ -208,7 +208,7 @@ def test_a_size_that_is_not_known_is_a_suspicion(
     assert outcome.gain is None
     assert model is None
     said = summary(Diagnosis(DESIGN, made, PREDICTION, outcome, end_points=analysis))
-    assert "is only a suspicion" in said
+    assert "is suspected but not significant" in said
     assert outcome.next_measurement.aim == "confirm"
     advice = why(outcome.next_measurement, "end_points")
     assert advice.startswith(f"on unit {outcome.next_measurement.unit}: ")

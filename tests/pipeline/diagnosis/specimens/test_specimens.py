@@ -200,7 +200,7 @@ def test_a_size_that_is_not_known_is_a_suspicion(bench, fe, monkeypatch) -> None
     assert outcome.next_measurement.aim == "confirm"
     prediction = prediction_of(DESIGN, bench.K_b, bench.K_e)
     said = summary(Diagnosis(DESIGN, measured(K), prediction, outcome, specimens=analysis))
-    assert "is only a suspicion" in said
+    assert "is suspected but not significant" in said
 
 
 def test_lobes_and_a_joint_alike_are_ambiguous_and_the_next_specimen_is_computed(

@@ -69,8 +69,8 @@ def test_time_and_a_steady_rise_are_not_told_apart(zero: Course, tmp_path: Path)
     assert cause.id == "sensor_drift"
     assert cause.or_temperature
     assert cause_title(cause) == "drift of the angle reading (with time or temperature)"
-    assert sure_words(cause).endswith("but not of which")
-    assert any("follows the temperature explains this record as well" in n for n in notes(found))
+    assert sure_words(cause).endswith("time or temperature undecided")
+    assert any("follows the temperature fits it as well" in n for n in notes(found))
     after = found.outcome.next_measurement
     assert after is not None
     assert after.vary == "temperature_C"
