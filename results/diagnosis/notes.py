@@ -99,8 +99,8 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         measured = diagnosis.measurement
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
         return (
-            *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
             *unit_notes(diagnosis.sweep),
+            *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
             *of_record,
         )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
