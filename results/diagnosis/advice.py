@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
-from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NamedCause, NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.sweep.next_measurement import (
     AMPLITUDES,
@@ -105,16 +105,17 @@ def doing_words(doing: Doing) -> str:
     return DOING[doing.kind].format(torques=torques)
 
 
-def why(after: NextMeasurement, kind: MeasurementKind) -> str:
-    """What to measure next and why, of the kind of measurement that was diagnosed."""
+def why(after: NextMeasurement, kind: MeasurementKind, found: Iterable[NamedCause] = ()) -> str:
+    """What to measure next and why, of the kind of measurement that was diagnosed and the causes `found`."""
     if after.aim == "more_data" and after.doing is not None:
         return doing_words(after.doing)
-    return {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind](
-        after
-    )
+    sizes = {c.id: c.magnitude for c in found}
+    titles = [title_of(c, sizes.get(c, 0.0)) for c in after.causes]
+    words = {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind]
+    return words(after, titles)
 
 
-def _of_sweep(after: NextMeasurement) -> str:
+def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.aim == "find_structure":
         if after.doing is not None:
             return doing_words(after.doing)
@@ -124,56 +125,54 @@ def _of_sweep(after: NextMeasurement) -> str:
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
         if after.vary != cause.vary and after.doing == LARGER:
-            return (
-                f"the record determines {cause.title} well; to extend it to other torques: {doing}"
-            )
-        return f"to confirm {cause.title}: {doing}"
-    titles = _one_from_others(after)
+            return f"the record determines {titles[0]} well; to extend it to other torques: {doing}"
+        return f"to confirm {titles[0]}: {doing}"
+    separated = _one_from_others(titles)
     if after.doing is None or not after.separation:  # nothing was computed
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
-        return f"to distinguish {titles}: {doing}"
+        return f"to distinguish {separated}: {doing}"
     apart = f"their predictions then differ by {after.separation:.0f} times the noise"
-    return f"{doing_words(after.doing)}: {apart}; it distinguishes {titles}"
+    return f"{doing_words(after.doing)}: {apart}; it distinguishes {separated}"
 
 
 def _alone(channel: str) -> str:
     return SHOWS_STRUCTURE.get(channel, "vary it alone, everything else held")
 
 
-def _of_end_points(after: NextMeasurement) -> str:
+def _of_end_points(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.aim == "find_structure":
         return "closed torque sweeps show the whole curve, not its ends"
-    titles = ", ".join(map(title_of, after.causes))
+    every = ", ".join(titles)
     reveals = known_causes()[after.causes[0]].reveals
     here = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
     if after.aim != "separate":
-        return f"{here}; it would confirm or rule out {titles}"
+        return f"{here}; it would confirm or rule out {every}"
     apart = (
         "the two of them that are nearest to each other then differ by "
         f"{after.separation:.0f} times the noise"
     )
     if after.same_points is not None:
         apart += f" (end points at the same torques: {after.same_points:.1f})"
-    return f"{here}; it distinguishes {titles}: {apart}"
+    return f"{here}; it distinguishes {every}: {apart}"
 
 
-def _of_specimens(after: NextMeasurement) -> str:
+def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.aim == "find_structure":
         what = words_of(after.structure, after.vary) if after.structure else after.vary
         return f"the structure is {what}: repeat those specimens, in another order"
     if after.aim == "confirm":
         test = CONFIRMS.get(after.causes[0])
         return f"to confirm it: {test}" if test else f"measure {after.vary} of the specimens"
-    titles = _one_from_others(after)
+    separated = _one_from_others(titles)
     if after.dimension_mm is None:
-        return f"another fixture, to distinguish {titles}"
+        return f"another fixture, to distinguish {separated}"
     made, drawn = after.dimension_mm
     return (
         f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
-        f"to each other then differ by {after.separation:.1f} times the noise; it distinguishes {titles}"
+        f"to each other then differ by {after.separation:.1f} times the noise; it distinguishes {separated}"
     )
 
 
-def _one_from_others(after: NextMeasurement) -> str:
-    first, *others = map(title_of, after.causes)
+def _one_from_others(titles: Sequence[str]) -> str:
+    first, *others = titles
     return f"{first} from {' or '.join(others)}"

@@ -44,7 +44,9 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
-        lines += prose(f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind)}")
+        lines += prose(
+            f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind, diagnosis.causes)}"
+        )
     for note in notes(diagnosis):
         lines += prose(f"note: {note}", "  ", "    ")
     lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",))

@@ -51,7 +51,10 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         record["extended_model"] = EXTENDED_MODEL
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
-        record["next_measurement"] = {"vary": after.vary, "why": why(after, diagnosis.kind)}
+        record["next_measurement"] = {
+            "vary": after.vary,
+            "why": why(after, diagnosis.kind, diagnosis.causes),
+        }
     return record
 
 

@@ -149,7 +149,7 @@ def _after(diagnosis: Diagnosis) -> Iterable[Block]:
         yield Heading("What to measure next")
         yield Paragraph(
             bold(f"{capital(channel_words(after.vary))}. ")
-            + plain(sentence(why(after, diagnosis.kind)))
+            + plain(sentence(why(after, diagnosis.kind, diagnosis.causes)))
         )
 
 

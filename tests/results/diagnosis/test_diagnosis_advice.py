@@ -60,3 +60,12 @@ def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
     assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
     assert "as simulated: this record does not narrow it" in said
+
+
+@pytest.mark.parametrize(
+    ("percent", "title"), [(-9.0, "gear stiffer"), (9.0, "elastic part left out")]
+)
+def test_the_next_measurement_names_a_cause_as_the_verdict_does(percent: float, title: str) -> None:
+    found = NamedCause("series_compliance", 1.0, (), percent, 0.5, "%", 20.0, 3.0)
+    confirm = NextMeasurement("torque_amplitude", "confirm", ("series_compliance",))
+    assert f"to confirm {title}" in why(confirm, "sweep", (found,))
