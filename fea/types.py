@@ -223,9 +223,14 @@ class Stiffness:
         return self.lower_Nm_per_rad, self.upper_Nm_per_rad
 
     @property
+    def width_Nm_per_rad(self) -> float:
+        """Distance of the bounds."""
+        return self.upper_Nm_per_rad - self.lower_Nm_per_rad
+
+    @property
     def half_width(self) -> float:
         """Half the distance of the bounds over K."""
-        return (self.upper_Nm_per_rad - self.lower_Nm_per_rad) / (2 * self.K_Nm_per_rad)
+        return self.width_Nm_per_rad / (2 * self.K_Nm_per_rad)
 
     def times(self, factor: float) -> Stiffness:
         """Of a body whose Young's modulus is so many times as large."""
