@@ -163,6 +163,8 @@ def answered_within(
     """
     try:
         solid = solve()
+    except NestingError:  # an error of the program
+        raise
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
         failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "
