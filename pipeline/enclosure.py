@@ -149,7 +149,13 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
         guaranteed=narrow and enclosure.guaranteed,
         method=f"K is {how}; bounds {enclosure.method}",
         shortfall=MET if enclosure.half_width <= tolerance else solid.shortfall,
+        proven_Nm_per_rad=None if narrow else proven_by(enclosure),
     )
+
+
+def proven_by(enclosure: Stiffness) -> tuple[float, float] | None:
+    """Its bounds where they are theorems."""
+    return enclosure.bounds_Nm_per_rad if enclosure.guaranteed else None
 
 
 def answered_within(

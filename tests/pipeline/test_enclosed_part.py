@@ -72,6 +72,9 @@ def test_the_solid_model_by_name_is_refined_as_ever(suite_cache: Path) -> None:
     found = part_stiffness.part_stiffness(model(CUP.changed(asked), suite_cache))
     assert len(found.levels) > 1
     assert not found.guaranteed
+    assert found.proven_Nm_per_rad is not None
+    lower, upper = found.proven_Nm_per_rad
+    assert lower < found.K_Nm_per_rad < upper
 
 
 def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> None:
