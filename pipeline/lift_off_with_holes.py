@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from flexspline.fea.types import MET, Stiffness
+from flexspline.geometry.errors import plain_number
 from flexspline.geometry.part import Part
 from flexspline.pipeline.enclosed_part import TOO_FAR, PartSolver, enclosure_of
 from flexspline.pipeline.enclosure import answered_within
@@ -71,8 +72,8 @@ def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
         upper_Nm_per_rad=upper,
         guaranteed=False,
         method=(
-            f"K with the seat held, {held.K_Nm_per_rad:.5g} N·m/rad, times {low:.4f} to {high:.4f}, what "
-            "lift-off leaves of it on two bodies of revolution"
+            f"K with the seat held, {plain_number(held.K_Nm_per_rad, 5)} N·m/rad, times {low:.4f} to "
+            f"{high:.4f}, what lift-off leaves of it on two bodies of revolution"
         ),
     )
 
