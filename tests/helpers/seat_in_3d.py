@@ -56,8 +56,12 @@ def rim_in_3d(part: Part, repeats: int, coarser: float) -> Rim:
     loads, torque = repeat.loads()
     turn, seat = 2 * pi / repeats, repeat.seat()
     area = np.asarray(abs(seat @ repeat.seat_joins(0)).sum(0)).ravel()
-    work, free, compliance = 0.0, {}, {}
+    work, works, free, compliance = 0.0, {}, {}, {}
     for k in range(0, repeats, 2):
+        if (same := repeats - k) in compliance:  # the wave that goes the other way round
+            work += works[same]
+            free[k], compliance[k] = free[same].conj(), compliance[same].conj()
+            continue
         joins = repeat.joins(k)
         load = joins.conj().T @ sum(
             np.exp(-1j * k * a * turn) * each.ravel() * (NMM_PER_NM / torque)
@@ -65,7 +69,8 @@ def rim_in_3d(part: Part, repeats: int, coarser: float) -> Rim:
         )
         push = (joins.conj().T @ (seat @ repeat.seat_joins(k))).toarray() / area
         u = _solved((joins.conj().T @ model.matrix @ joins).tocsr(), np.column_stack([load, push]))
-        work += float((load.conj() @ u[:, 0]).real) / repeats
+        works[k] = float((load.conj() @ u[:, 0]).real) / repeats
+        work += works[k]
         free[k], compliance[k] = push.conj().T @ u[:, 0], push.conj().T @ u[:, 1:]
     own, n = repeats // 2, len(area)  # repeats of a half turn, and places of each
     gap = np.zeros((own, n))
@@ -104,12 +109,17 @@ class _Repeat:
 
         return sorted_on("symmetry_start"), sorted_on("symmetry_end")
 
+    def _phase(self, k: int) -> complex:
+        """Of one repeat over the one before; real without rounding where it is."""
+        phase = np.exp(2j * pi * k / self.repeats)
+        return complex(phase.real, phase.imag if abs(phase.imag) > 1e-12 else 0.0)
+
     def joins(self, k: int) -> csr_matrix:
         """Components of all nodes (rows) from those that are free."""
         start, end = self._twins()
         n = len(self.mesh.nodes)
         node, phase = np.arange(n), np.ones(n, complex)
-        node[end], phase[end] = start, np.exp(2j * pi * k / self.repeats)
+        node[end], phase[end] = start, self._phase(k)
         columns = (3 * node[:, None] + np.arange(3)).ravel()
         all_of_it = csr_matrix((np.repeat(phase, 3), (np.arange(3 * n), columns)), (3 * n, 3 * n))
         loose = np.ones((n, 3), bool)
@@ -121,7 +131,7 @@ class _Repeat:
         start, end = self._twins()
         n = len(self.mesh.nodes)
         node, phase = np.arange(n), np.ones(n, complex)
-        node[end], phase[end] = start, np.exp(2j * pi * k / self.repeats)
+        node[end], phase[end] = start, self._phase(k)
         corners = np.setdiff1d(np.unique(self.mesh.on("seat")[:, :3]), end)
         return csr_matrix((phase, (np.arange(n), node)), (n, n))[:, corners]
 
@@ -172,8 +182,11 @@ def _quadrature(mesh: TetMesh, patch: str) -> Iterator[tuple[np.ndarray, ...]]:
 
 
 def _solved(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
-    """Complex, Hermitian, as a real symmetric system of twice the size."""
+    """Real, or complex and Hermitian as a real symmetric system of twice the size."""
     n = len(right)
+    if not matrix.imag.data.any() and not right.imag.any():
+        with factorised(matrix.real.tocsr()) as solve:
+            return np.column_stack([solve(column.copy()) for column in right.real.T]) + 0j
     twice = bmat([[matrix.real, -matrix.imag], [matrix.imag, matrix.real]]).tocsr()
     found = np.empty_like(right)
     with factorised(twice) as solve:
