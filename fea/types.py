@@ -204,6 +204,7 @@ class Stiffness:
     error_scale : true error over estimated error, as found from the meshes; 1 where nothing is
         estimated.
     shortfall : why the refinement ended before its tolerance was met.
+    proven_Nm_per_rad : bounds that are theorems, where those given are narrower estimates; else None.
     """
 
     K_Nm_per_rad: float
@@ -216,6 +217,7 @@ class Stiffness:
     levels: tuple[MeshLevel, ...]
     error_scale: float = 1.0
     shortfall: Shortfall = MET
+    proven_Nm_per_rad: tuple[float, float] | None = None
 
     @property
     def bounds_Nm_per_rad(self) -> tuple[float, float]:
@@ -223,15 +225,22 @@ class Stiffness:
         return self.lower_Nm_per_rad, self.upper_Nm_per_rad
 
     @property
+    def width_Nm_per_rad(self) -> float:
+        """Distance of the bounds."""
+        return self.upper_Nm_per_rad - self.lower_Nm_per_rad
+
+    @property
     def half_width(self) -> float:
         """Half the distance of the bounds over K."""
-        return (self.upper_Nm_per_rad - self.lower_Nm_per_rad) / (2 * self.K_Nm_per_rad)
+        return self.width_Nm_per_rad / (2 * self.K_Nm_per_rad)
 
     def times(self, factor: float) -> Stiffness:
         """Of a body whose Young's modulus is so many times as large."""
+        proven = self.proven_Nm_per_rad
         return replace(
             self,
             K_Nm_per_rad=self.K_Nm_per_rad * factor,
+            proven_Nm_per_rad=proven and (proven[0] * factor, proven[1] * factor),
             lower_Nm_per_rad=self.lower_Nm_per_rad * factor,
             upper_Nm_per_rad=self.upper_Nm_per_rad * factor,
             levels=tuple(level.times(factor) for level in self.levels),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asin, ceil, pi
+from math import asin, ceil, inf, pi
 
 from flexspline.geometry.bolts import pitch
 from flexspline.geometry.bounds import GAP_mm, above, below, lengths
@@ -14,15 +14,24 @@ from flexspline.geometry.shapes import Flexspline
 
 
 def bolt_faults(
-    prefix: str, part: Flexspline | Shaft, inner: tuple[str, float], outer: tuple[str, float]
+    prefix: str,
+    part: Flexspline | Shaft,
+    inner: tuple[str, float],
+    outer: tuple[str, float],
+    root: float = inf,
 ) -> Iterator[DesignError]:
-    """Holes that leave the ring between two diameters (key, mm), or touch each other."""
+    """Holes that leave the ring between two diameters (key, mm), touch each other, or cut the part in two.
+
+    `root`: diameter [mm] of the circle about the axis that a single hole may not hold as a whole, for what
+    stands on it would be cut off.
+    """
     n, circle, hole = part.bolt_count, part.bolt_circle_diameter_mm, part.bolt_hole_diameter_mm
     if n == 0 or outer[1] <= inner[1]:
         return
     land = f"{inner[0]} = {inner[1]:g} and {outer[0]} = {outer[1]:g}"
     alone = n == 1 and inner[1] == 0  # a single hole in a solid end may lie over the axis
-    largest = outer[1] if alone else (outer[1] - inner[1]) / 2
+    largest = min(outer[1], (outer[1] + root) / 2) if alone else (outer[1] - inner[1]) / 2
+    cut_off = "" if root == inf or not alone else " and do not cut off the next segment"
     most = largest - 4 * GAP_mm - (SMALLEST_MM if alone else 0.0)
     holes = lengths(0, most)  # a little less than fits: a circle must be left to put them on
     if holes is None:
@@ -33,17 +42,20 @@ def bolt_faults(
         )
         return
     if hole is None or hole > most:
-        if circle is not None and (on_circle := _room_on(circle, n, inner[1], outer[1], alone)):
+        if circle is not None and (
+            on_circle := _room_on(circle, n, inner[1], outer[1], alone, root)
+        ):
             holes, land = on_circle, f"{land} on bolt_circle_diameter_mm = {circle:g}"
         verb = "give a number" if hole is None else "must be"
         needs = f"bolt_count = {n} needs it; " if hole is None else ""
         yield DesignError(
             prefix + "bolt_hole_diameter_mm",
             MISSING if hole is None else hole,
-            f"{needs}{verb} {holes} mm to fit between {land}",
+            f"{needs}{verb} {holes} mm to fit between {land}{cut_off}",
         )
         return
-    low, high = 0.0 if alone else above(inner[1] + hole), below(outer[1] - hole)
+    low = max(0.0, hole - root) if alone else above(inner[1] + hole)
+    high = below(outer[1] - hole)
     if circle is None or not low - GAP_mm < circle < high + GAP_mm:
         verb = "give a number" if circle is None else "must be"
         needs = f"bolt_count = {n} needs it; " if circle is None else ""
@@ -51,7 +63,7 @@ def bolt_faults(
             prefix + "bolt_circle_diameter_mm",
             MISSING if circle is None else circle,
             f"{needs}{verb} {lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = "
-            f"{hole:g} stay between {land}",
+            f"{hole:g} stay between {land}{cut_off}",
         )
     elif pitch(circle, n) <= hole + GAP_mm:
         smaller = lengths(0, below(pitch(circle, n)), 4)
@@ -64,9 +76,11 @@ def bolt_faults(
         )
 
 
-def _room_on(circle: float, count: int, inner: float, outer: float, alone: bool) -> str | None:
+def _room_on(
+    circle: float, count: int, inner: float, outer: float, alone: bool, root: float
+) -> str | None:
     """Diameters of holes that fit on a circle; None where it leaves no room for any."""
-    inside = outer if alone else circle - inner
+    inside = min(outer, circle + root) if alone else circle - inner
     return lengths(0, below(min(inside, outer - circle, pitch(circle, count))))
 
 

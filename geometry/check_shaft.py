@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import accumulate, pairwise
+from math import inf, sqrt
 
 from flexspline.geometry.bounds import (
     GAP_mm,
@@ -42,6 +43,7 @@ def shaft_faults(s: Shaft) -> Iterator[DesignError]:
         s,
         ("segment[0].inner_diameter_mm", first.inner_diameter_mm),
         ("segment[0].outer_diameter_mm", first.outer_diameter_mm),
+        _root(s),
     )
     if s.keyway and s.slot and not segments:
         yield from keyway_faults(s, s.keyway, s.slot.floor)
@@ -118,6 +120,19 @@ def _inner_faults(
         f"must be {room} mm: the same as before or a step of at least {STEP_mm:g} mm, and below "
         f"outer_diameter_mm = {most:g} and {name}.outer_diameter_mm = {before.outer_diameter_mm:g}",
     )
+
+
+def _root(s: Shaft) -> float:
+    """Diameter [mm] with which the second segment and its fillet stand on the first; inf where as large.
+
+    Where the fillet is lower than SMALLEST_MM it carries nothing, and less than that of the root is none.
+    """
+    steps = _steps(s)
+    if not steps or steps[0] > -GAP_mm:
+        return inf
+    f = s.fillet_mm
+    thin = sqrt(SMALLEST_MM * (2 * f - SMALLEST_MM)) if f > SMALLEST_MM else f
+    return s.segment[1].outer_diameter_mm + 2 * (f - thin - SMALLEST_MM)
 
 
 def _steps(s: Shaft) -> list[float]:

@@ -46,7 +46,7 @@ def stiffness(
     Raises
     ------
     DesignError : no such part or case, or the design asks for a model that the part does not allow.
-    ComputationError : no mesh or no solution; lift-off asked of the solid model.
+    ComputationError : no mesh or no solution; lift-off without bolt holes asked of the solid model.
 
     Examples
     --------

@@ -68,6 +68,7 @@ def of_toothed(of_plain: Stiffness) -> Stiffness:
     The bounds enclose the plain part's K. That its ring is as stiff as the toothed one is a model, and no
     theorem says how far off it is.
     """
+    of_plain = replace(of_plain, proven_Nm_per_rad=None)
     if not of_plain.guaranteed:
         return of_plain
     method = f"{of_plain.method}; of the part with the plain ring that stands for the teeth"

@@ -6,7 +6,8 @@ bodies; docs/theory.md proves it).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 
 from flexspline.fea.errors import NoBetterMeshError
@@ -54,6 +55,13 @@ class NestingError(ComputationError):
             f"{stiffer:.7g}: one of the two solutions is wrong; please report the design file"
         )
 
+    def at(self, values: Mapping[str, float]) -> NestingError:
+        """The same of a design of a study: with its values by dotted key, before the reason."""
+        where = ", ".join(f"{key} = {value:g}" for key, value in values.items())
+        found = copy(self)
+        found.args = (f"design with {where}: {self}",) if where else self.args
+        return found
+
 
 def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
     """K_b of a part with bolt holes: from the lower end of its cut body's to the upper of its whole body's.
@@ -74,17 +82,20 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     """The enclosure by two solved bodies; K is its middle.
 
     Ends that are estimates may cross where the bodies differ by less than the estimates are wrong by: then
-    the bounds go from the one to the other.
+    the bounds go from the one to the other. They may not by more than both half-widths together: then one of
+    the two K is wrong by twice its own bounds or more.
 
     Raises
     ------
-    NestingError : ends that are theorems cross.
+    NestingError : ends that are theorems cross, or estimates by more than that.
     """
     lower, upper = cut.lower_Nm_per_rad, whole.upper_Nm_per_rad
     guaranteed = cut.guaranteed and whole.guaranteed
-    if lower > upper and guaranteed:
+    allowed = 0.0 if guaranteed else (cut.width_Nm_per_rad + whole.width_Nm_per_rad) / 2
+    if lower - upper > allowed:
         raise NestingError(names.less, lower, names.more, upper)
-    gap = max(0.0, 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad)
+    gap = 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad
+    apart = percent(gap) if gap > 0 else "less than they are known to"
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
         lower_Nm_per_rad=min(lower, upper),
@@ -94,7 +105,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
         symmetry=names.symmetry,
         method=(
             f"from {names.less} to {names.more} (less material is never stiffer); their K differ by "
-            f"{percent(gap)}; of each: {whole.method}"
+            f"{apart}; of each: {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -138,7 +149,13 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
         guaranteed=narrow and enclosure.guaranteed,
         method=f"K is {how}; bounds {enclosure.method}",
         shortfall=MET if enclosure.half_width <= tolerance else solid.shortfall,
+        proven_Nm_per_rad=None if narrow else proven_by(enclosure),
     )
+
+
+def proven_by(enclosure: Stiffness) -> tuple[float, float] | None:
+    """Its bounds where they are theorems."""
+    return enclosure.bounds_Nm_per_rad if enclosure.guaranteed else None
 
 
 def answered_within(
@@ -152,6 +169,8 @@ def answered_within(
     """
     try:
         solid = solve()
+    except NestingError:  # an error of the program
+        raise
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
         failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "

@@ -16,11 +16,13 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
 from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.enclosed_part import (
+    PartSolver,
     enclosure_if_any,
-    enclosure_of,
+    has_enclosure,
     may_answer,
 )
 from flexspline.pipeline.enclosure import answered_within, check_against
+from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.refining import Refining
@@ -33,8 +35,8 @@ from flexspline.pipeline.solid_lobes import solid_lobes
 class LoadCase:
     """How one load case of the rim is solved, and what it is called while it is.
 
-    `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part. It
-    takes the part and, as `known`, the relative half-width of the bounds that these give.
+    `solid` takes the part and, as `known`, the relative half-width of the bounds that two bodies of
+    revolution give. It is None where no solid model is; then `with_holes` answers for parts with bolt holes.
     `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
@@ -42,50 +44,58 @@ class LoadCase:
     revolved: Callable[[PartModel], Stiffness]
     solid: Callable[..., Stiffness] | None
     fast: Callable[[Part, float], Stiffness]
+    with_holes: Callable[[PartModel], Stiffness] | None = None
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     """K_b of one lobe case, by the model that the part's stiffness uses.
 
     A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
-    the solid model is asked for by name, its K is only checked against them.
+    the solid model is asked for by name, its K is only checked against them. Lift-off with holes is theirs
+    under any setting, helped by K held of the part where they are far apart.
 
     Raises
     ------
     DesignError
     NestingError : the solid model's K lies outside.
-    ComputationError : the solve failed; or lift-off is asked of the solid model.
+    ComputationError : the solve failed; or lift-off without holes is asked of the solid model.
     """
     asked = CASES[case]
     if flexspline.axisymmetric:
         return asked.revolved(flexspline)
-    if may_answer(flexspline):
-        return _of_holed(flexspline, asked)
+    if asked.with_holes is not None and has_enclosure(flexspline):
+        return asked.with_holes(flexspline)
     if asked.solid is None:
         raise ComputationError(
             f"{asked.title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
+    if may_answer(flexspline):
+        return _of_holed(flexspline, asked.revolved, asked.solid)
     solid = asked.solid(flexspline)
     if enclosure := enclosure_if_any(flexspline, asked.revolved):
         check_against(solid, enclosure)
     return solid
 
 
-def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
-    """The enclosure; where it is too wide the solid model's K within it, if there is such a model."""
-    torsion = torsion_enclosure(flexspline)  # a fraction of a second, and kept
-    expected = torsion.half_width if torsion else inf
-    if asked.solid is None:
-        return enclosure_of(flexspline, asked.revolved, expected)
-    enclosure = enclosure_if_any(flexspline, asked.revolved, expected)
+def _of_holed(
+    flexspline: PartModel, revolved: PartSolver, solid: Callable[..., Stiffness]
+) -> Stiffness:
+    """The enclosure; where it is too wide the solid model's K within it."""
+    enclosure = enclosure_if_any(flexspline, revolved, _expected(flexspline))
     if enclosure is None:
-        return asked.solid(flexspline)
+        return solid(flexspline)
     tolerance = flexspline.tolerance
     if enclosure.half_width <= tolerance:
         return enclosure
-    solve = partial(asked.solid, flexspline, known=enclosure.half_width)
+    solve = partial(solid, flexspline, known=enclosure.half_width)
     return answered_within(enclosure, solve, tolerance)
+
+
+def _expected(flexspline: PartModel) -> float:
+    """Half-width of torsion's enclosure: it takes a fraction of a second, and is kept."""
+    torsion = torsion_enclosure(flexspline)
+    return torsion.half_width if torsion else inf
 
 
 def _by_itself(
@@ -117,9 +127,21 @@ def _resting(flexspline: PartModel) -> Stiffness:
     )
 
 
+def _resting_with_holes(flexspline: PartModel) -> Stiffness:
+    return resting_with_holes(
+        flexspline,
+        _resting,
+        CASES["lobes"].revolved,
+        lambda: rim_stiffness(flexspline, "lobes"),
+        _expected(flexspline),
+    )
+
+
 CASES: Mapping[RimCase, LoadCase] = {
     "lobes": _by_itself("lobes", "lobes", held_rim, partial(solid_lobes, supported=True)),
-    "lobes_contact": LoadCase("lobes, rim resting on the seat", _resting, None, contact),
+    "lobes_contact": LoadCase(
+        "lobes, rim resting on the seat", _resting, None, contact, _resting_with_holes
+    ),
     "lobes_unsupported": _by_itself(
         "lobes_unsupported",
         "lobes, rim unsupported",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
@@ -10,7 +11,7 @@ from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer
-from flexspline.pipeline.enclosure import answered_within, check_against, overlap
+from flexspline.pipeline.enclosure import answered_within, check_against, overlap, proven_by
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_torsion import (
@@ -78,6 +79,7 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
     solid = twisted_part(model).stiffness
     if enclosure is not None:
         check_against(solid, enclosure)
+        return replace(solid, proven_Nm_per_rad=proven_by(enclosure))
     return solid
 
 

@@ -65,12 +65,16 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
 
 
 def bounded_record(name: str, stiffness: Stiffness) -> Record:
-    """One stiffness, its bounds, and what they are."""
-    return {
+    """One stiffness, its bounds, and what they are; those that are theorems too, where they are wider."""
+    record: Record = {
         f"{name}_Nm_per_rad": stiffness.K_Nm_per_rad,
         f"{name}_bounds_Nm_per_rad": list(stiffness.bounds_Nm_per_rad),
         f"{name}_bounds_kind": bounds_kind(stiffness.guaranteed),
     }
+    if stiffness.proven_Nm_per_rad is not None:
+        record[f"{name}_guaranteed_bounds_Nm_per_rad"] = list(stiffness.proven_Nm_per_rad)
+        record[f"{name}_guaranteed_bounds_kind"] = bounds_kind(True)
+    return record
 
 
 def _ring(design: Design, ring: EquivalentRing) -> Record:

@@ -105,7 +105,7 @@ def test_every_error_of_ours_has_one_root(path: Path, name: str) -> None:
 
 def test_wrong_words_are_refused_in_one_line() -> None:
     design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
-    solid = design.changed({"solver.model": "solid"})
+    solid = design.changed({"solver.model": "solid", "flexspline.bolt_count": 0})
     for call in (
         lambda: flexspline.stiffness(design, "wave generator"),
         lambda: flexspline.stiffness(design, "flexspline", "no such case"),

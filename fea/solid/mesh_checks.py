@@ -12,7 +12,7 @@ from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.percent import percent
-from flexspline.geometry.surfaces import sector_planes
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_planes
 from flexspline.geometry.tagged import TaggedSurface
 
 AREA_TOLERANCE = 0.005
@@ -53,7 +53,7 @@ def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
         if not abs(found / right - 1) < SIZE_TOLERANCE:
             unit = "mm³" if what == VOLUME else "mm²"
             raise MeshQualityError(
-                f"{what}: {found:.6g} {unit} in the mesh, {right:.6g} in the part:"
+                f"{_in_words(what)}: {found:.6g} {unit} in the mesh, {right:.6g} in the part:"
                 " a smaller solver.edge_length_mm describes it better"
             )
 
@@ -66,7 +66,9 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
         # at 180° both planes are one, and its facets all go by the first name
         off = np.abs(plane.project(nodes) - nodes).max(initial=0.0)
         if off > OFF_PLANE * size:
-            raise MeshQualityError(f"a node of {plane.patch} lies {off:.3g} mm off the plane")
+            raise MeshQualityError(
+                f"a node of {_in_words(plane.patch)} lies {off:.3g} mm off the plane"
+            )
     space = SolidSpace.of(mesh)
     volume = space.volumes.sum()
     if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
@@ -77,6 +79,13 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
         area = space.areas(patch).sum()
         if abs(area / wanted - 1) > AREA_TOLERANCE:
             raise MeshQualityError(
-                f"patch '{patch}' has {area:.6g} mm² in the mesh, {wanted:.6g} mm² in the CAD,"
-                f" allowed difference {percent(AREA_TOLERANCE)}"
+                f"the mesh describes {_in_words(patch)} badly: {area:.6g} mm² of {wanted:.6g} mm², "
+                f"{percent(abs(area / wanted - 1))} off where {percent(AREA_TOLERANCE)} is allowed"
             )
+
+
+def _in_words(patch: str) -> str:
+    """A user knows the named patches (docs/contract.md), not the planes that a sector is cut at."""
+    if patch in (SYMMETRY_START, SYMMETRY_END):
+        return "the plane at which the part is cut for its symmetry"
+    return "the volume" if patch == VOLUME else f"patch '{patch}'"

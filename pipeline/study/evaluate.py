@@ -20,6 +20,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.pipeline.backlash import backlash, series_stiffness
+from flexspline.pipeline.enclosure import NestingError
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
@@ -68,13 +69,20 @@ def outcome_of(stored: Mapping[str, Any]) -> Outcome:
 
 
 def evaluate(task: Task) -> Outcome:
-    """Build and solve one design; only our own errors become a fault of it."""
+    """Build and solve one design; only our own errors become a fault of it.
+
+    Raises
+    ------
+    NestingError : one of two models is wrong, so no row is to be trusted; it names the design's values.
+    """
     began = time.perf_counter()
     try:
         design = with_values(design_from(task.tables), task.values)
         found = figures_of(design, task.solves, task.holes)
     except DesignError as fault:
         found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
+    except NestingError as fault:
+        raise fault.at(task.values) from None
     except FlexsplineError as fault:
         found = Outcome(faults=(str(fault),))
     return replace(found, seconds=time.perf_counter() - began)
@@ -90,6 +98,7 @@ def figures_of(
     Raises
     ------
     DesignError, ComputationError : the plain ring of drawn teeth does not fit, or was not found.
+    NestingError
     """
     flexspline, shaft = with_equivalent_ring(design).parts
     in_sum, w0, torque = (
@@ -112,6 +121,8 @@ def figures_of(
     for name, solve in asked.items():
         try:
             found |= _figures(name, solve())
+        except NestingError:  # an error of the program
+            raise
         except FlexsplineError as fault:
             missing[name] = str(fault)
     if "torsion" in solves:
@@ -120,6 +131,8 @@ def figures_of(
         if "gear" in solves and "K_e" not in missing:
             try:
                 found |= _gear(design, found["K_e_Nm_per_rad"])
+            except NestingError:
+                raise
             except FlexsplineError as fault:
                 missing["gear"] = str(fault)
         if not {in_sum, "K_e"} & set(missing):

@@ -21,6 +21,7 @@ from flexspline.geometry.keys import HOLES
 from flexspline.geometry.shaft_shape import ShaftSegment
 from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.analysis import analysis_context
+from flexspline.pipeline.enclosure import NestingError
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.study.figures import stiffness_keys
 
@@ -119,6 +120,10 @@ def holes_of(
 
     `drift`: share of the holes' effect, as HOLE_EFFECT_DRIFT; 0 where the study leaves the shaft as it is.
     None where the shaft has none.
+
+    Raises
+    ------
+    NestingError : one of two models of the shaft is wrong.
     """
     if not pierced(design):
         return None
@@ -126,6 +131,8 @@ def holes_of(
     try:
         fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
+    except NestingError:  # an error of the program
+        raise
     except (ComputationError, MemoryError) as fault:
         why = missing_because(fault)
         say(f"K_e stays that of the shaft without holes: {why}")

@@ -28,7 +28,10 @@ TOPICS = {
         "test_pinched_cylinder",
     ),
     "Solid models against the two-sided bounds": ("test_solid_against_axisymmetric",),
-    "Bolt holes between two bodies of revolution": ("test_enclosed_holes",),
+    "Bolt holes between two bodies of revolution": (
+        "test_enclosed_holes",
+        "test_lift_off_with_holes",
+    ),
     "Honesty of the solid model's error estimate": ("test_estimate_honesty",),
 }
 """Headings in the page's order, and the test modules under each."""

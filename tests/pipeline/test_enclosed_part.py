@@ -72,6 +72,9 @@ def test_the_solid_model_by_name_is_refined_as_ever(suite_cache: Path) -> None:
     found = part_stiffness.part_stiffness(model(CUP.changed(asked), suite_cache))
     assert len(found.levels) > 1
     assert not found.guaranteed
+    assert found.proven_Nm_per_rad is not None
+    lower, upper = found.proven_Nm_per_rad
+    assert lower < found.K_Nm_per_rad < upper
 
 
 def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> None:
@@ -90,18 +93,12 @@ def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> No
 
 
 def test_a_wide_enclosure_leaves_it_to_the_solid_model(suite_cache: Path) -> None:
-    """K_b and the held rim by tetrahedra, within the enclosure; lift-off by the enclosure alone, and said."""
+    """K_b and the held rim by tetrahedra, within the enclosure."""
     part = model(WIDE, suite_cache)
-    uniform = part_stiffness.part_stiffness(part)
-    held = rim_stiffness(part, "lobes")
-    for found in (uniform, held):
+    for found in (part_stiffness.part_stiffness(part), rim_stiffness(part, "lobes")):
         assert found.model == "solid"
         assert not found.guaranteed
         assert found.half_width < 0.02
-    contact = rim_stiffness(part, "lobes_contact")
-    assert contact.half_width > 0.02
-    assert contact.shortfall.words == TOO_FAR
-    assert contact.lower_Nm_per_rad < held.upper_Nm_per_rad
 
 
 def test_where_the_solid_model_fails_the_enclosure_stays(suite_cache: Path, monkeypatch) -> None:
@@ -178,7 +175,8 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
 
 @pytest.mark.long
 def test_lift_off_that_the_solid_model_cannot_solve_is_said(suite_cache: Path) -> None:
-    asked = {"solver.model": "solid", "solver.tolerance_pct": 5.0}
+    """Without holes no two bodies of revolution answer in its place."""
+    asked = {"solver.model": "solid", "solver.tolerance_pct": 5.0, "flexspline.bolt_count": 0}
     context = AnalysisContext(CUP.changed(asked), Cache(suite_cache), Progress())
     found = stiffnesses(context, shaft=False)
     assert set(found.missing) == {"K_b_lobes_contact"}

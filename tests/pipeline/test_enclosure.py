@@ -21,6 +21,21 @@ FINE = 2e-4
 """At which 0.12 % between the two bodies of xb1-40 are more than their bounds."""
 CHEAP = 0.02
 """Of the random designs: their bounds hold on the coarsest mesh too."""
+OUT_OF_ORDER = 0.005
+"""Of K: by which the cut body may be the stiffer one at ± 1 %. 0.18 % at most on 60 designs, where the holes
+do nearly nothing."""
+FAR_APART = load_design(EXAMPLES / "xb1-40.toml").changed(
+    {
+        "flexspline.wall_thickness_mm": 2.0,
+        "flexspline.ring_thickness_mm": 2.0,
+        "flexspline.length_mm": 14.0,
+        "flexspline.diaphragm_thickness_mm": 2.0,
+        "flexspline.boss_thickness_mm": 2.0,
+        "flexspline.bolt_count": 2,
+        "flexspline.bolt_hole_diameter_mm": 4.8,
+    }
+)
+"""A short thick cup with two large holes."""
 THIN = 165
 """Number of the random design with a wall of 0.12 mm on a tube of 39 mm, lobes on its finest meshes."""
 SOLVES: dict[str, Callable[[Part], Stiffness]] = {
@@ -43,15 +58,59 @@ FROM_SOFT_TO_STIFF = ("K_b_lobes_unsupported", "K_b_lobes_contact", "K_b_lobes")
     ],
 )
 def test_nested_bodies_are_in_order(number: int, cases: list[str]) -> None:
-    """`enclosed` refuses what is not."""
+    """Each body's own K and bounds, before anything is made of them."""
     for design in holed_designs(number):
-        part = design.part("flexspline")
-        K = {name: enclosed(part, SOLVES[name]) for name in cases}
-        for name, found in K.items():
+        bodies = nested_bodies(design.part("flexspline"))
+        K = {}
+        for name in cases:
+            cut, whole = (SOLVES[name](body) for body in (bodies.cut, bodies.whole))
+            assert cut.lower_Nm_per_rad <= whole.upper_Nm_per_rad, (design.name, name)
+            assert cut.K_Nm_per_rad <= whole.K_Nm_per_rad * (1 + OUT_OF_ORDER), (design.name, name)
+            found = K[name] = between(cut, whole, OF_HOLES)
             assert 0 < found.lower_Nm_per_rad <= found.K_Nm_per_rad <= found.upper_Nm_per_rad
             assert found.guaranteed == (name == "K_b")
         for softer, stiffer in pairwise(name for name in FROM_SOFT_TO_STIFF if name in K):
             assert K[softer].lower_Nm_per_rad <= K[stiffer].upper_Nm_per_rad
+
+
+@pytest.mark.parametrize("case", SOLVES)
+def test_the_other_way_round_is_an_error_in_every_case(case: str) -> None:
+    """Estimates too: the two are 16 to 30 % apart, and each is known to ± 0.8 % at worst."""
+    bodies = nested_bodies(FAR_APART.part("flexspline"))
+    cut, whole = SOLVES[case](bodies.cut), SOLVES[case](bodies.whole)
+    found = between(cut, whole, OF_HOLES)
+    assert found.bounds_Nm_per_rad == (cut.lower_Nm_per_rad, whole.upper_Nm_per_rad)
+    with pytest.raises(NestingError, match="one of the two solutions is wrong"):
+        between(whole, cut, OF_HOLES)
+
+
+@pytest.mark.parametrize(
+    ("cut_K", "whole_guaranteed", "refused"),
+    [
+        (1010.0, False, False),  # ± 10 and ± 10: ends at 1000 and 1010
+        (1039.0, False, False),  # they cross by 19, and 20 is allowed
+        (1041.0, False, True),
+        (1021.0, True, True),  # theorems may not cross at all
+        (1019.0, True, False),
+    ],
+)
+def test_estimates_may_cross_by_both_half_widths(
+    cut_K: float, whole_guaranteed: bool, refused: bool
+) -> None:
+    whole = known(1000.0, whole_guaranteed)
+    cut = known(cut_K, whole_guaranteed)
+    if refused:
+        with pytest.raises(NestingError):
+            between(cut, whole, OF_HOLES)
+    else:
+        found = between(cut, whole, OF_HOLES)
+        assert found.bounds_Nm_per_rad == tuple(sorted((cut_K - 10.0, 1010.0)))
+        assert "differ by less than they are known to" in found.method
+
+
+def known(K: float, guaranteed: bool) -> Stiffness:
+    """To ± 10 N·m/rad."""
+    return Stiffness(K, K - 10, K + 10, guaranteed, "axisymmetric", "", "", ())
 
 
 def test_the_other_way_round_is_an_error() -> None:

@@ -27,6 +27,7 @@ def test_a_narrow_enclosure_bounds_k() -> None:
     found = held_within(solid(1001.0, 0.5), enclosure(998.0, 1002.0), TOLERANCE)
     assert (found.K_Nm_per_rad, found.bounds_Nm_per_rad) == (1001.0, (998.0, 1002.0))
     assert found.guaranteed
+    assert found.proven_Nm_per_rad is None  # the bounds themselves are
     assert found.model == "solid"
     assert "theorem" in found.method
 
@@ -53,6 +54,10 @@ def test_a_wide_enclosure_leaves_each_end_to_the_better() -> None:
     assert found.bounds_Nm_per_rad == (1004.0, 1010.0)
     assert found.K_Nm_per_rad == 1008.0
     assert not found.guaranteed
+    assert found.proven_Nm_per_rad == (980.0, 1010.0)
+    assert found.times(2.0).proven_Nm_per_rad == (1960.0, 2020.0)
+    wide = enclosure(980.0, 1010.0, guaranteed=False)
+    assert held_within(solid(1008.0, 4.0), wide, TOLERANCE).proven_Nm_per_rad is None
 
 
 def test_where_both_are_wide_the_narrower_bounds() -> None:

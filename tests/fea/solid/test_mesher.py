@@ -166,8 +166,18 @@ def test_a_wrong_patch_is_refused(shaft) -> None:
     mine = np.flatnonzero(fewer == grip)
     largest = np.argsort(-SolidSpace.of(mesh).areas("grip"))
     fewer[mine[largest[: len(mine) // 10 + 1]]] = 0  # at least a tenth of the area
-    with pytest.raises(MeshQualityError, match="patch 'grip'"):
+    with pytest.raises(MeshQualityError, match="patch 'grip' badly"):
         check_against_cad(replace(mesh, facet_patch=fewer), surface)
+
+
+def test_a_plane_of_symmetry_is_called_so(shaft) -> None:
+    """A user knows the named patches, not what the planes are called inside."""
+    surface, mesh = shaft
+    named = {name: i for i, name in enumerate(mesh.patches)}
+    lost = np.where(mesh.facet_patch == named["symmetry_start"], named[""], mesh.facet_patch)
+    with pytest.raises(MeshQualityError, match="cut for its symmetry") as caught:
+        check_against_cad(replace(mesh, facet_patch=lost), surface)
+    assert "symmetry_start" not in str(caught.value)
 
 
 def test_a_bent_symmetry_plane_is_refused(shaft) -> None:

@@ -1,0 +1,85 @@
+"""Lift-off of a part with bolt holes, where its two bodies of revolution lie far apart.
+
+Lift-off has no solid model. But what it leaves of K, K resting over K held, is nearly the same of both bodies
+however far their K are apart, for it is a matter of the rim. The solid model knows K held of the part itself,
+so K is that times the ratio of the two. No theorem says that the part's ratio lies between theirs: the bounds
+are estimates (docs/decisions.md has the parts on which they were compared with drawn holes).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from flexspline.fea.types import MET, Stiffness
+from flexspline.geometry.errors import plain_number
+from flexspline.geometry.part import Part
+from flexspline.pipeline.enclosed_part import TOO_FAR, PartSolver, enclosure_of
+from flexspline.pipeline.enclosure import answered_within
+from flexspline.pipeline.parts import PartModel
+
+RATIO_SPREAD = 0.25
+"""Of the distance of the two ratios, by which the part's may lie beyond either. On the parts compared it lay
+between them, or 0.02 of their distance beyond."""
+
+
+def resting_with_holes(
+    model: PartModel,
+    resting: PartSolver,
+    held: PartSolver,
+    held_of_part: Callable[[], Stiffness],
+    expected: float,
+) -> Stiffness:
+    """K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
+
+    `resting` and `held` solve a body of revolution, `held_of_part` the part with its seat held; it is asked
+    where the enclosure is wider than the tolerance only. `expected`: as of `enclosure_of`.
+
+    Raises
+    ------
+    NestingError
+    ComputationError : of `resting` and `held`.
+    """
+    ratios: dict[Part, tuple[float, float]] = {}
+
+    def solve(body: PartModel) -> Stiffness:
+        found, own = resting(body), held(body)
+        ratios[body.part] = (
+            found.lower_Nm_per_rad / own.lower_Nm_per_rad,
+            found.upper_Nm_per_rad / own.upper_Nm_per_rad,
+        )
+        return found
+
+    enclosure = enclosure_of(model, solve, expected)
+    if enclosure.half_width <= model.tolerance:
+        return enclosure
+
+    def of_part() -> Stiffness:
+        return _judged(by_ratio(held_of_part(), [*ratios.values()]), model.tolerance)
+
+    return answered_within(enclosure, of_part, model.tolerance)
+
+
+def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
+    """K held times what lift-off leaves of it, from the bounds of the two bodies' ratios; an estimate."""
+    middles = [(low + high) / 2 for low, high in ratios]
+    spread = RATIO_SPREAD * (max(middles) - min(middles))
+    low, high = min(r[0] for r in ratios) - spread, max(r[1] for r in ratios) + spread
+    lower, upper = held.lower_Nm_per_rad * low, held.upper_Nm_per_rad * high
+    return replace(
+        held.times((low + high) / 2),
+        lower_Nm_per_rad=lower,
+        upper_Nm_per_rad=upper,
+        guaranteed=False,
+        method=(
+            f"K with the seat held, {plain_number(held.K_Nm_per_rad, 5)} N·m/rad, times {low:.4f} to "
+            f"{high:.4f}, what lift-off leaves of it on two bodies of revolution"
+        ),
+    )
+
+
+def _judged(found: Stiffness, tolerance: float) -> Stiffness:
+    if found.half_width <= tolerance:
+        return replace(found, shortfall=MET)
+    held = f"; with the seat held: {found.shortfall}" if found.shortfall else ""
+    return replace(found, shortfall=replace(found.shortfall, words=f"{TOO_FAR}{held}"))
