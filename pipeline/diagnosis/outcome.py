@@ -48,9 +48,7 @@ class NamedCause:
     @property
     def deviations(self) -> float:
         """How many standard deviations the size is away from no effect."""
-        cause = known_causes().get(self.id)
-        none = cause.none if cause else 0.0
-        off = abs(self.magnitude - (none if self.none is None else self.none))
+        off = abs(self.magnitude - none_of(self))
         return off / self.magnitude_std if self.magnitude_std > 0 else inf
 
     @property
@@ -63,6 +61,14 @@ class NamedCause:
         """Of a surplus: by how much the gear is stiffer than simulated, and the standard deviation [%]."""
         left = 1 + self.magnitude / 100
         return 100 * (1 / left - 1), self.magnitude_std / left**2
+
+
+def none_of(cause: NamedCause) -> float:
+    """The magnitude that no effect has."""
+    known = known_causes().get(cause.id)
+    if cause.none is not None or known is None:
+        return cause.none or 0.0
+    return known.none
 
 
 @dataclass(frozen=True)

@@ -101,4 +101,5 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     outcome, sweep = diagnosis.outcome, diagnosis.sweep
     doubt = sweep.doubt if sweep is not None else None
     held_out = "" if outcome.gain is None else left_out_words(outcome.gain.held_out)
-    return model_text(diagnosis.model, provenance, outcome.causes, outcome.gain, doubt, held_out)
+    causes = outcome.causes if sweep is None else sweep.causes
+    return model_text(diagnosis.model, provenance, causes, outcome.gain, doubt, held_out)

@@ -24,7 +24,7 @@ def prediction_warnings(predicted: Predicted) -> Iterator[str]:
     """One line each."""
     if new := predicted.new_units:
         told = f"unit {listed(new, 'units')}" if any(new) else "a file without units"
-        yield f"{told}: not in the model's record, so its zero is taken as 0"
+        yield f"{told}: not a unit of the model, so its zero is taken as 0, and its own effects are not known"
     yield from map(beyond_words, predicted.beyond)
 
 

@@ -148,11 +148,13 @@ def left_out(causes: Sequence[NamedCause]) -> str:
 
 
 def _listed(causes: Sequence[NamedCause]) -> str:
-    return "; ".join(map(_said, causes))
+    """Each with its size; a cause that units have in different sizes is there more than once."""
+    ids = [c.id for c in causes]
+    return "; ".join(_said(c, "only " * (ids.count(c.id) == 1)) for c in causes)
 
 
-def _said(cause: NamedCause) -> str:
-    where = f" (only {listed(cause.own_units, 'units')})" if cause.own_units else ""
+def _said(cause: NamedCause, only: str) -> str:
+    where = f" ({only}{listed(cause.own_units, 'units')})" if cause.own_units else ""
     return f"{cause_title(cause)}, {magnitude_words(cause)}{where}"
 
 
@@ -173,7 +175,9 @@ def _rivals(causes: Sequence[NamedCause]) -> str:
 def _beside(causes: Sequence[NamedCause]) -> str:
     """Causes without a rival, beside others that have one, each with how sure it is; "" of none."""
     told = [
-        f"{_said(c)} ({sure_words(c)})" for c in causes if not c.alternatives and is_significant(c)
+        f"{_said(c, 'only ')} ({sure_words(c)})"
+        for c in causes
+        if not c.alternatives and is_significant(c)
     ]
     return f" Also identified: {'; '.join(told)}." if told else ""
 

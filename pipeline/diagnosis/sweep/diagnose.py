@@ -41,6 +41,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
     Doing,
+    NamedCause,
     NextMeasurement,
     Unexplained,
 )
@@ -60,7 +61,7 @@ from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 class SweepAnalysis:
     """What stands behind the verdict on a sweep, with all that a figure or a report needs.
 
-    `model` is the calibrated simulation with the causes found, `doubt` what its predictions may be off by;
+    `model` is the calibrated simulation with the `causes` found, `doubt` what its predictions may be off by;
     `tests` are of what it leaves. All of it is of one unit, `apart.shown`, where units are judged `apart`.
     """
 
@@ -68,6 +69,7 @@ class SweepAnalysis:
     model: ExtendedModel
     doubt: PredictionUncertainty
     tests: tuple[ChannelTest, ...]
+    causes: tuple[NamedCause, ...]
     apart: UnitsApart | None = None
 
 
@@ -98,7 +100,9 @@ def diagnose_sweep(
         gains_at_levels=levels,
     )
     written = written_model(explained, shown.sweep, ids, gain)
-    return outcome, SweepAnalysis(explained, written.model, written.doubt, shown.left.tests, apart)
+    return outcome, SweepAnalysis(
+        explained, written.model, written.doubt, shown.left.tests, own.causes, apart
+    )
 
 
 def _tested(decision: Decision, fails: Unexplained | None) -> Decision:

@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
-from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
+from flexspline.pipeline.diagnosis.structure import BackwardLoop, FarSlope, LateAngle
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
@@ -53,7 +53,11 @@ def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
         decision = overruled(broken, beside=decision.unexplained)
     if decision.verdict == "consistent" and (slow := slow_noise(explained)) is not None:
         decision = overruled(slow)
-    misread = _misread(prepared, explained, decision)
+    misread = None
+    if broken is None or not isinstance(
+        broken.structure, FarSlope
+    ):  # a wrong unit or column bends all
+        misread = _misread(prepared, explained, decision)
     if misread is not None:  # whatever else was found is what the race made of it
         late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
         decision = overruled(late)

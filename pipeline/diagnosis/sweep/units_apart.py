@@ -6,19 +6,22 @@ and of none, and what that misses in each unit has no name.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.fit import LINEAR
+from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, NamedCause, none_of
 from flexspline.pipeline.diagnosis.sweep.judged import JudgedSweep, judge
 from flexspline.pipeline.diagnosis.sweep.offset_race import is_shifted
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, crossing_of
+
+USUAL_SCATTER = 0.4
+"""Of the median size: by so much units of one batch may differ, friction foremost, and are told together."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +42,8 @@ class UnitsApart:
 def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     """The units' own verdicts, where units differ and each by itself is explained.
 
-    None where one of them is not, where all show the same causes, which all rows together tell best, and
-    where one is stiffer or has another gap: that may as well be the gain of its own reading.
+    None where one of them is not; where all rows together show the same as each unit, in about the same size;
+    and where one is stiffer than the others: that may as well be the gain of its own reading.
     """
     names = whole.sweep.units
     if len(names) < 2 or not (whole.decision.verdict == "unknown" or _differ(whole.explained)):
@@ -51,43 +54,61 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
         if not isinstance(alone, JudgedSweep) or alone.decision.verdict == "unknown":
             return None
         judged[name] = alone
-    shown = {name: {c.id for c in j.decision.causes} for name, j in judged.items()}
-    alike = all(ids == shown[names[0]] for ids in shown.values())
-    if not any(shown.values()) or (alike and whole.decision.verdict != "unknown"):
+    shown = [{c.id for c in j.decision.causes} for j in judged.values()]
+    if not any(shown) or len({SERIES in ids for ids in shown}) > 1:
         return None
-    if not alike and any(ids & {*LINEAR} for ids in shown.values()):
+    causes = _of_all(judged)
+    together = {c.id for c in whole.decision.causes}
+    alike = all(ids == together for ids in shown) and len(causes) == len(together)
+    if alike and not whole.decision.unexplained:
         return None
     largest = {
         name: hypot(*(c.rms_arcsec for c in j.decision.causes)) for name, j in judged.items()
     }
     open_ = any(j.decision.verdict == "ambiguous" for j in judged.values())
     left = tuple(u for j in judged.values() for u in j.decision.unexplained)
-    decision = Decision("ambiguous" if open_ else "named", _of_all(judged), left)
+    decision = Decision("ambiguous" if open_ else "named", causes, left)
     return UnitsApart(judged, max(largest, key=lambda name: largest[name]), decision)
 
 
 def _differ(explained: ExplainedSweep) -> bool:
-    """Whether a cause is not the same in all units, or the gap is crossed elsewhere in one of them."""
+    """Whether a cause is not the same in all units, one has a gap far from the simulated one, or crosses it
+    elsewhere."""
     if any(shares.differ for shares in explained.shares.values()):
         return True
-    prepared = explained.prepared
-    outlier, history = prepared.outlier, prepared.rig.history
-    own = [rows[~outlier[rows]] for rows in history.unit_slices]
-    crossings = [crossing_of(prepared, explained.identified.fit, rows) for rows in own]
+    prepared, fit = explained.prepared, explained.identified.fit
+    if any(fit.calibration_of(u).far_off(prepared.prediction) for u in range(fit.units)):
+        return True
+    own = [rows[~prepared.outlier[rows]] for rows in prepared.rig.history.unit_slices]
+    crossings = [crossing_of(prepared, fit, rows) for rows in own]
     return any(seen is not None and is_shifted(seen, prepared) for seen in crossings)
 
 
 def _of_all(judged: Mapping[str, JudgedSweep]) -> tuple[NamedCause, ...]:
-    """The causes of all units, the largest first, each once: a mean over those that show it."""
+    """The causes of all units, the largest first: of about one size once, and each that stands out."""
     of_cause: dict[str, dict[str, NamedCause]] = {}
     for name, j in judged.items():
         for c in j.decision.causes:
             of_cause.setdefault(c.id, {})[name] = c
-    found = []
-    for units in of_cause.values():
-        own = tuple(units) if len(units) < len(judged) else ()
-        found.append(replace(_mean([*units.values()]), own_units=own))
+    found = [c for units in of_cause.values() for c in _by_size(units, len(judged))]
     return tuple(sorted(found, key=lambda c: -c.rms_arcsec))
+
+
+def _by_size(units: Mapping[str, NamedCause], count: int) -> Iterator[NamedCause]:
+    """One cause by units: those of about one size together, and every other; of `count` units in all."""
+    effect = {name: c.magnitude - none_of(c) for name, c in units.items()}
+    usual = float(np.median([*effect.values()]))
+    apart = {
+        name: c
+        for name, c in units.items()
+        if abs(effect[name] - usual) > max(SIZE_KNOWN * c.magnitude_std, USUAL_SCATTER * abs(usual))
+    }
+    rest = {name: c for name, c in units.items() if name not in apart}
+    if rest:
+        own = tuple(rest) if len(rest) < count else ()
+        yield replace(_mean([*rest.values()]), own_units=own)
+    for name, c in apart.items():
+        yield replace(c, own_units=(name,))
 
 
 def _mean(causes: Sequence[NamedCause]) -> NamedCause:

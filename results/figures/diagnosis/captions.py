@@ -17,8 +17,8 @@ CAPTIONS = {
         Each part of the extended model alone. Pale: the measurement less all other parts. Dark: the
         model. The pale points should scatter evenly about the dark ones.""",
     "units": """
-        How much of each cause each unit shows, with two standard deviations: 1 is the stated size,
-        0 is nothing. A unit off the dashed line differs from the others.""",
+        How much of each cause each unit shows, with two standard deviations: 1 is the mean of all
+        units or, where each was diagnosed by itself, the largest; 0 is nothing.""",
     "held_out": """
         Prediction error on rows not used in the fit. Where the last bar reaches the dashed line, the
         extended model predicts as well as the instrument reads.""",

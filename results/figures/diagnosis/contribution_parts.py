@@ -38,7 +38,7 @@ class ContributionPanel:
 def parts(shown: SweepPictureData) -> list[ContributionPanel]:
     """Named causes, then structure that has no name."""
     identified = shown.explained.identified
-    found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
+    found = [_named(shown, c) for c in shown.analysis.causes]
     told = {p.owner for p in found}
     for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:

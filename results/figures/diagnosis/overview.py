@@ -47,7 +47,7 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
                     rasterized=True, label=f"measured, torque {words}",
                 )  # fmt: skip
         rows = thinned(shown.kept)
-        if shown.diagnosis.outcome.causes:
+        if shown.analysis.causes:
             below.plot(
                 torque[rows], model[rows], ".", ms=2.0, mew=0, color=INK, label="extended model",
                 rasterized=True,

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.outcome import NamedCause, none_of
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
 from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
 from flexspline.results.diagnosis.words import cause_title
@@ -36,18 +35,18 @@ def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
 
 
 def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
-    """Sizes in units that were diagnosed each by itself, over the one that is stated."""
-    known = known_causes().get(cause.id)
-    none = known.none if known else 0.0
+    """Sizes in units that were diagnosed each by itself, over the largest."""
+    none = none_of(cause)
     own = [{c.id: c for c in j.decision.causes}.get(cause.id) for j in apart.judged.values()]
     pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in own]
     size, std = np.array(pairs).T
-    whole = cause.magnitude - none
-    return UnitAmplitudes((size - none) / whole, std / abs(whole), inf)
+    whole = max(size - none, key=abs)
+    split = sum(c.id == cause.id for c in apart.decision.causes) > 1 or None in own
+    return UnitAmplitudes((size - none) / whole, std / abs(whole), inf if split else 0.0)
 
 
 def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
-    """One panel per cause: 1 is the size that is stated, 0 nothing."""
+    """One panel per cause: 1 is the mean size, or the largest, 0 nothing."""
     apart = shown.analysis.apart
     names = plain_names(tuple(apart.judged) if apart else shown.explained.prepared.sweep.units)
     height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM

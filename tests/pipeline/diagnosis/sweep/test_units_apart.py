@@ -128,3 +128,28 @@ def test_the_rows_of_some_units_are_a_record_of_their_own() -> None:
     assert np.array_equal(some.angle_arcsec, rows[taken])
     assert np.array_equal(some.line, rows[taken] + 2)
     assert np.array_equal(some.own_cycle, record.own_cycle[taken])
+
+
+def test_a_unit_of_another_size_stands_apart(tmp_path: Path) -> None:
+    """All three rub, one of them three times as much: no mean of the three is any gear's."""
+    rng = np.random.default_rng(8)
+    angles = {
+        unit: angle_of(None, rng) - half_arcsec / 0.8 * friction(TORQUE, 0.8)
+        for unit, half_arcsec in (("a", 3.0), ("b", 9.0), ("c", 3.2))
+    }
+    outcome = outcome_of(tmp_path, angles, TORQUE, WARM)
+    assert outcome.verdict == "named"
+    assert not outcome.unexplained  # what units miss of their mean is no stick-slip
+    sizes = {c.own_units: (c.magnitude, c.magnitude_std) for c in outcome.causes}
+    assert set(sizes) == {("b",), ("a", "c")}
+    assert abs(sizes["b",][0] - 18.0) < 3 * sizes["b",][1]
+    assert abs(sizes["a", "c"][0] - 6.2) < 3 * sizes["a", "c"][1]
+
+
+def test_a_gap_far_from_the_simulated_one_is_that_unit_s(tmp_path: Path) -> None:
+    rng = np.random.default_rng(9)
+    angles = {unit: angle_of(None, rng) + (unit == WITH) * 40 * np.sign(TORQUE) for unit in "abc"}
+    outcome = outcome_of(tmp_path, angles, TORQUE, WARM)
+    (cause,) = outcome.causes
+    assert (cause.id, cause.own_units) == ("clearance_offset", (WITH,))
+    assert abs(cause.magnitude - 80.0) < 3 * cause.magnitude_std
