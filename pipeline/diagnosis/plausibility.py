@@ -124,7 +124,9 @@ def _interchanged(size: SweepSize, sweep: Sweep) -> bool:
     """Whether the twist is as simulated, within `LIKELY_RATIO`, where each reading is the other."""
     torques = float(np.ptp(sweep.history.torque_Nm))
     elastic = (size.simulated_arcsec - size.simulated_gap_arcsec) * size.span_arcsec / torques
-    ratio = torques / max(elastic + size.simulated_gap_arcsec, LEAST_RATIO)
+    if elastic <= size.simulated_gap_arcsec:  # a dead channel, whose rest is the gap
+        return False
+    ratio = torques / (elastic + size.simulated_gap_arcsec)
     return 1 / LIKELY_RATIO < ratio < LIKELY_RATIO
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
+from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.data_used import data_record
@@ -39,6 +40,8 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         ],
         "notes": list(notes(diagnosis)),
     }
+    if diagnosis.sweep is not None and diagnosis.sweep.apart is not None:
+        record |= _by_unit(diagnosis.sweep.apart)
     if outcome.gain is not None:
         record["gain"] = _gain(outcome.gain)
     if outcome.gains_at_levels:
@@ -56,6 +59,19 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
             "why": why(after, diagnosis.kind, diagnosis.causes),
         }
     return record
+
+
+def _by_unit(apart: UnitsApart) -> Record:
+    """Verdict and causes of each unit that was diagnosed by itself, and the one that the rest is of."""
+    units = [
+        {
+            "unit": name,
+            "verdict": "insufficient" if own is None else own.verdict,
+            "causes": [_cause(c) for c in own.causes] if own else [],
+        }
+        for name, own in apart.decisions.items()
+    ]
+    return {"unit_shown": apart.unit, "by_unit": units}
 
 
 def _cause(cause: NamedCause) -> Record:

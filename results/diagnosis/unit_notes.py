@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
@@ -25,18 +26,21 @@ def unit_notes(analysis: SweepAnalysis) -> list[str]:
 def _apart_notes(apart: UnitsApart) -> list[str]:
     """What each unit shows by itself, and which one the figures are of."""
     found = [
-        "no explanation holds for all units, so each was diagnosed by its own rows; figures, errors on "
-        f"held-out rows and the extended model are of {apart.shown}"
+        "the units differ, so each was diagnosed by its own rows; figures, calibrated values, errors on "
+        f"held-out rows and the extended model are of {apart.unit}"
     ]
-    for name, judged in apart.judged.items():
-        causes = judged.decision.causes
-        said = "; ".join(map(_sized, causes)) if causes else "agrees with the simulation"
-        found.append(f"{name} by itself: {said}")
-    return found
+    return found + [f"{name} by itself: {_decided(own)}" for name, own in apart.decisions.items()]
+
+
+def _decided(own: Decision | None) -> str:
+    if own is None:
+        return "too few rows for a verdict"
+    return "; ".join(map(_sized, own.causes)) or "agrees with the simulation"
 
 
 def _sized(cause: NamedCause) -> str:
-    return f"{cause_title(cause)}, {magnitude_words(cause)}"
+    others = "".join(f", or {title_of(c)}" for c in cause.alternatives)
+    return f"{cause_title(cause)}, {magnitude_words(cause)}{others}"
 
 
 def _share_notes(explained: ExplainedSweep) -> list[str]:

@@ -107,7 +107,7 @@ class StiffnessHardening(Cause):
         """Where the stiffness may be as simulated."""
         law = int(shape["law"])
         if law == LAWS["power"]:  # levels off nowhere, and is infinitely soft at zero
-            return AT_LARGEST, ON_THE_CHORD
+            return FAR_OUT, AT_LARGEST, ON_THE_CHORD
         bends_on = law in BENDS_ON and cls._slope_at_the_largest(shape) > LEVELLED_OFF
         return (*HELD, AT_LARGEST) if bends_on else HELD
 

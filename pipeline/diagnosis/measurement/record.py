@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step
 from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
@@ -72,6 +73,13 @@ class Sweep:
 
     def __len__(self) -> int:
         return len(self.angle_arcsec)
+
+    @property
+    def encoder_step_arcsec(self) -> float:
+        """Of the file's readings; 0 where there is none."""
+        if self.averaging is not None:
+            return self.averaging.encoder_step_arcsec
+        return encoder_step(self.angle_arcsec)
 
     @property
     def own_cycle(self) -> np.ndarray:

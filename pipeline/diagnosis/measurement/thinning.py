@@ -42,7 +42,7 @@ def thinned(sweep: Sweep) -> Sweep:
         return sweep
     h = sweep.history
     keys = h.unit_and_cycle
-    labels, counts = np.unique(keys, return_counts=True)
+    labels, at, counts = np.unique(keys, return_index=True, return_counts=True)
     block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
@@ -50,7 +50,7 @@ def thinned(sweep: Sweep) -> Sweep:
     near = (np.abs(torque) < crossing_band_Nm(h)) & _passing(h, torque, block)
     at_corners = _rows_at_corners(h, keys, block)
     groups: list[np.ndarray] = []
-    for label in _spared(labels, counts, block):
+    for label in _spared(labels, h.unit[at], counts, block):
         rows = np.flatnonzero(keys == label)
         rows = rows[corner[rows] | ~_spikes(sweep.angle_arcsec[rows])]
         single = near[rows] | corner[rows] | _beside_jumps(sweep.angle_arcsec[rows])
@@ -135,12 +135,20 @@ def _blocks(
     return found
 
 
-def _spared(labels: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:
-    """Cycles that are kept, so that few enough rows remain; the first and the last always."""
-    many = int(MOST_FIT_ROWS / max(1.0, np.median(counts) / block))
-    if len(labels) <= many:
+def _spared(labels: np.ndarray, units: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:
+    """Cycles that are kept, so that few enough rows remain; the first and the last of each unit always.
+
+    Of each cycle its label, its unit and the number of its rows.
+    """
+    share = MOST_FIT_ROWS / max(1.0, np.median(counts) / block) / len(labels)
+    if share >= 1:
         return labels
-    return labels[np.unique(np.linspace(0, len(labels) - 1, max(2, many)).round().astype(int))]
+    kept = []
+    for unit in np.unique(units):
+        own = labels[units == unit]
+        many = max(2, int(share * len(own)))
+        kept.append(own[np.unique(np.linspace(0, len(own) - 1, many).round().astype(int))])
+    return np.concatenate(kept)
 
 
 def _beside_jumps(angle: np.ndarray) -> np.ndarray:

@@ -4,8 +4,8 @@
 |---|---|
 | read the file (`../diagnose.py`) | `measurement/record.py`, `measurement/table.py` |
 | refuse an absurd size (`../diagnose.py`) | `../plausibility.py`, `size.py` |
-| refuse too few torques | `too_few_torques.py` |
 | the steps from here to a torque or an angle that comes late | `judged.py` |
+| refuse too few torques | `too_few_torques.py` |
 | shorten a long record | `measurement/thinning.py` |
 | choose rows, estimate the noise | `row_selection.py`, `measurement/noise.py`, `prepare.py` |
 | evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |
@@ -52,7 +52,6 @@ from flexspline.pipeline.diagnosis.sweep.judged import JudgedSweep, judge
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
-from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart, units_apart
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
@@ -62,7 +61,7 @@ class SweepAnalysis:
     """What stands behind the verdict on a sweep, with all that a figure or a report needs.
 
     `model` is the calibrated simulation with the `causes` found, `doubt` what its predictions may be off by;
-    `tests` are of what it leaves. All of it is of one unit, `apart.shown`, where units are judged `apart`.
+    `tests` are of what it leaves. All of it is of one unit, `apart.unit`, where units are judged `apart`.
     """
 
     explained: ExplainedSweep
@@ -77,14 +76,11 @@ def diagnose_sweep(
     sweep: Sweep, prediction: Prediction
 ) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
     """The verdict on a sweep and what stands behind it; None where there are too few data."""
-    shortage = too_few_torques(sweep)
-    if shortage is not None:
-        return _insufficient(shortage), None
     whole = judge(sweep, prediction)
     if not isinstance(whole, JudgedSweep):
         return _insufficient(whole), None
     apart = units_apart(whole)
-    shown = apart.judged[apart.shown] if apart else whole
+    shown = apart.shown if apart else whole
     explained, own = shown.explained, shown.decision
     ids = [c.id for c in own.causes]
     gain, levels = gains_of(explained, ids)

@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,9 @@ class JudgedSweep:
 
 def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
     """The verdict on a record; why there is none where rows are too few or drowned in noise."""
+    shortage = too_few_torques(sweep)
+    if shortage is not None:
+        return shortage
     try:
         prepared = prepare(thinned(sweep), prediction)
     except TooFewRowsError as error:

@@ -10,13 +10,12 @@ from scipy.special import ndtr
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.encoder_step import (
     ROUNDING_RATIO,
-    encoder_step,
-    undithered,
 )
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
+from flexspline.pipeline.diagnosis.sweep.rounding import rounding_of_angle
 
 JUMP_BLOCK_ROWS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
@@ -59,8 +58,7 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     every = float(np.var(left))
     coloured = every - prepared.noise.white
     saw_tooth = float(np.sqrt(coloured if coloured > 0 else every))
-    step = encoder_step(prepared.sweep.angle_arcsec)
-    if saw_tooth**2 < ROUNDING_RATIO * undithered(prepared.noise.white, step):
+    if saw_tooth**2 < ROUNDING_RATIO * rounding_of_angle(prepared, fit).left_arcsec ** 2:
         return None
     return Jumps(p_value, saw_tooth)
 

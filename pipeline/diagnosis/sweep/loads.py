@@ -32,8 +32,9 @@ class Loads:
         for rows in history.unit_slices:
             torque = history.torque_Nm[rows]
             side = np.where(np.abs(torque) > band_Nm, np.sign(torque), 0)
-            parts = np.split(rows, np.flatnonzero(np.diff(side)) + 1)
-            found += [own for own in parts if side[own[0] - rows[0]] and _returns(history, own)]
+            begun = np.r_[0, np.flatnonzero(np.diff(side)) + 1]
+            parts = zip(np.split(rows, begun[1:]), side[begun], strict=True)
+            found += [own for own, way in parts if way and _returns(history, own)]
         return cls(history, tuple(found))
 
     def __len__(self) -> int:

@@ -5,10 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot, sqrt
 
-from flexspline.pipeline.diagnosis.measurement.encoder_step import (
-    encoder_step,
-    undithered,
-)
+from flexspline.pipeline.diagnosis.measurement.encoder_step import undithered
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.measurement.torque_step import torque_step_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
@@ -48,9 +45,8 @@ def rounding_of_angle(prepared: PreparedSweep, fit: SweepFit) -> Rounding:
     Means of a programme in step with the encoder keep all of it.
     """
     angle, averaging = prepared.sweep.angle_arcsec, prepared.sweep.averaging
-    step, variance = encoder_step(angle), prepared.noise.white
+    step, variance = prepared.sweep.encoder_step_arcsec, prepared.noise.white
     if averaging is not None:
-        step = averaging.encoder_step_arcsec
         variance = averaging.variance_within(fit.measured_rig().compliance)
     left = sqrt(undithered(variance, step))
     is_steps = step >= FINEST_ENCODER * (angle.max() - angle.min())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import fdtrc, ndtr
 
-from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
+from flexspline.pipeline.diagnosis.measurement.encoder_step import undithered
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.measurement.slow_runs import resting
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -47,7 +47,7 @@ def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     still = [rows for rows in still if len(rows) >= HOLD_PARTS]
     if len(still) < FEWEST_STUCK_HOLDS:
         return None
-    left, step = fit.residual(), encoder_step(prepared.sweep.angle_arcsec)
+    left, step = fit.residual(), prepared.sweep.encoder_step_arcsec
     of_torque = (fit.measured_rig().compliance * torque_noise_Nm(history)) ** 2
     p_frozen, variance = _frozen(left, still, step, of_torque)
     hold = np.full(len(kept), -1)

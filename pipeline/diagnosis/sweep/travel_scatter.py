@@ -9,8 +9,6 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import steadied
 from flexspline.pipeline.diagnosis.measurement.encoder_step import (
     ROUNDING_RATIO,
-    encoder_step,
-    undithered,
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import still
@@ -20,6 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
+from flexspline.pipeline.diagnosis.sweep.rounding import rounding_of_angle
 
 REACHES = (0.015, 0.04, 0.1)
 """Shares of the largest torque within which what sticks is forgotten: a factor of 2.6 apart, within which
@@ -30,6 +29,8 @@ TIME_DEGREE = 3
 """Of the polynomial in the time between two rows that noise of any colour is taken for."""
 SINGULAR_RATIO = 1e-9
 """Of the largest singular value: rows evenly in time have one time between them."""
+MOST_OF_RESIDUAL = 2.0
+"""Times the variance of what is left: what sticks is a part of it, and known to better than that."""
 FEWEST_PAIRS = 8
 """Pairs so many rows apart: twice the polynomial's coefficients."""
 
@@ -58,7 +59,9 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     ]
     deviations, variance = max(found)
     p_value = min(1.0, len(REACHES) * float(ndtr(-deviations)))
-    rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
+    if variance > MOST_OF_RESIDUAL * float(np.var(left)):  # rounding in step with the programme
+        return None
+    rounding = rounding_of_angle(prepared, fit).left_arcsec ** 2
     if p_value > STRUCTURE_P_VALUE or variance < ROUNDING_RATIO * rounding:
         return None
     return Jumps(p_value, float(np.sqrt(variance)))

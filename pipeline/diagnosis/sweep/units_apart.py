@@ -24,18 +24,24 @@ USUAL_SCATTER = 0.4
 """Of the median size: by so much units of one batch may differ, friction foremost, and are told together."""
 
 
+MOST_UNITS = 12
+"""That are judged each by itself: a unit takes about a second."""
+
+
 @dataclass(frozen=True)
 class UnitsApart:
     """Each unit's own verdict.
 
     Attributes
     ----------
-    judged : of each unit, by its name. shown : the name of the one whose causes are largest.
+    decisions : of each unit, by its name; None of one with too few rows.
+    unit, shown : name and explanation of the one whose verdict is open, or whose causes are largest.
     decision : on all of them.
     """
 
-    judged: Mapping[str, JudgedSweep]
-    shown: str
+    decisions: Mapping[str, Decision | None]
+    unit: str
+    shown: JudgedSweep
     decision: Decision
 
 
@@ -46,29 +52,36 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     and where one is stiffer than the others: that may as well be the gain of its own reading.
     """
     names = whole.sweep.units
-    if len(names) < 2 or not (whole.decision.verdict == "unknown" or _differ(whole.explained)):
+    if not 2 <= len(names) <= MOST_UNITS:
         return None
-    judged: dict[str, JudgedSweep] = {}
+    if whole.decision.verdict != "unknown" and not _differ(whole.explained):
+        return None
+    decisions: dict[str, Decision | None] = {}
+    largest, unit, shown = (False, 0.0), "", whole
     for number, name in enumerate(names):
         alone = judge(of_units(whole.sweep, [number]), whole.explained.prepared.prediction)
-        if not isinstance(alone, JudgedSweep) or alone.decision.verdict == "unknown":
+        if not isinstance(alone, JudgedSweep):
+            decisions[name] = None
+            continue
+        own = alone.decision
+        if own.verdict == "unknown":
             return None
-        judged[name] = alone
-    shown = [{c.id for c in j.decision.causes} for j in judged.values()]
-    if not any(shown) or len({SERIES in ids for ids in shown}) > 1:
-        return None
+        decisions[name] = own
+        size = own.verdict == "ambiguous", hypot(*(c.rms_arcsec for c in own.causes))
+        if size > largest:
+            largest, unit, shown = size, name, alone
+    judged = {name: own for name, own in decisions.items() if own is not None}
     causes = _of_all(judged)
-    together = {c.id for c in whole.decision.causes}
-    alike = all(ids == together for ids in shown) and len(causes) == len(together)
-    if alike and not whole.decision.unexplained:
+    series = [c for c in causes if c.id == SERIES]
+    if len(judged) < 2 or not causes or len(series) > 1 or any(c.own_units for c in series):
         return None
-    largest = {
-        name: hypot(*(c.rms_arcsec for c in j.decision.causes)) for name, j in judged.items()
-    }
-    open_ = any(j.decision.verdict == "ambiguous" for j in judged.values())
-    left = tuple(u for j in judged.values() for u in j.decision.unexplained)
-    decision = Decision("ambiguous" if open_ else "named", causes, left)
-    return UnitsApart(judged, max(largest, key=lambda name: largest[name]), decision)
+    together = {c.id for c in whole.decision.causes}
+    each_shows = all({c.id for c in own.causes} == together for own in judged.values())
+    if each_shows and len(causes) == len(together) and not whole.decision.unexplained:
+        return None
+    left = tuple(u for own in judged.values() for u in own.unexplained)
+    decision = Decision("ambiguous" if largest[0] else "named", causes, left)
+    return UnitsApart(decisions, unit, shown, decision)
 
 
 def _differ(explained: ExplainedSweep) -> bool:
@@ -84,11 +97,11 @@ def _differ(explained: ExplainedSweep) -> bool:
     return any(seen is not None and is_shifted(seen, prepared) for seen in crossings)
 
 
-def _of_all(judged: Mapping[str, JudgedSweep]) -> tuple[NamedCause, ...]:
+def _of_all(judged: Mapping[str, Decision]) -> tuple[NamedCause, ...]:
     """The causes of all units, the largest first: of about one size once, and each that stands out."""
     of_cause: dict[str, dict[str, NamedCause]] = {}
-    for name, j in judged.items():
-        for c in j.decision.causes:
+    for name, own in judged.items():
+        for c in own.causes:
             of_cause.setdefault(c.id, {})[name] = c
     found = [c for units in of_cause.values() for c in _by_size(units, len(judged))]
     return tuple(sorted(found, key=lambda c: -c.rms_arcsec))

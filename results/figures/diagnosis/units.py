@@ -37,7 +37,7 @@ def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
 def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
     """Sizes in units that were diagnosed each by itself, over the largest."""
     none = none_of(cause)
-    own = [{c.id: c for c in j.decision.causes}.get(cause.id) for j in apart.judged.values()]
+    own = [{c.id: c for c in j.causes}.get(cause.id) for j in apart.decisions.values() if j]
     pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in own]
     size, std = np.array(pairs).T
     whole = max(size - none, key=abs)
@@ -48,7 +48,11 @@ def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
 def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
     """One panel per cause: 1 is the mean size, or the largest, 0 nothing."""
     apart = shown.analysis.apart
-    names = plain_names(tuple(apart.judged) if apart else shown.explained.prepared.sweep.units)
+    names = plain_names(
+        tuple(n for n, j in apart.decisions.items() if j)
+        if apart
+        else shown.explained.prepared.sweep.units
+    )
     height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM
     x = np.arange(len(names))
     with styled():

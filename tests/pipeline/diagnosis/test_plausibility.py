@@ -109,7 +109,7 @@ END_POINTS = "unit,torque_Nm,{plus},{minus}\n"
 
 @pytest.mark.parametrize(
     ("unit", "factor", "needle"),
-    [("arcsec", -1, "turned?"), ("arcmin", 1, "in arcsec, not arcmin"), ("deg", 1, "in arcsec, not deg"),
+    [("arcsec", -1, "reversed?"), ("arcmin", 1, "in arcsec, not arcmin"), ("deg", 1, "in arcsec, not deg"),
      ("arcsec", 1 / 206.265, "in mrad, not arcsec"), ("arcsec", 1, "")],
 )  # fmt: skip
 def test_end_points(unit: str, factor: float, needle: str, tmp_path: Path) -> None:
