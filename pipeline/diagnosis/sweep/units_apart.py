@@ -12,7 +12,9 @@ from math import hypot, sqrt
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, NamedCause, none_of
@@ -54,7 +56,9 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     names = whole.sweep.units
     if not 2 <= len(names) <= MOST_UNITS:
         return None
-    if whole.decision.verdict != "unknown" and not _differ(whole.explained):
+    told = whole.decision.verdict != "unknown"
+    differ = _differing(whole.explained) if told else set()
+    if told and not differ:
         return None
     decisions: dict[str, Decision | None] = {}
     largest, unit, shown = (False, 0.0), "", whole
@@ -75,26 +79,30 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     series = [c for c in causes if c.id == SERIES]
     if len(judged) < 2 or not causes or len(series) > 1 or any(c.own_units for c in series):
         return None
-    together = {c.id for c in whole.decision.causes}
-    each_shows = all({c.id for c in own.causes} == together for own in judged.values())
-    if each_shows and len(causes) == len(together) and not whole.decision.unexplained:
-        return None
+    if told and not whole.decision.unexplained:
+        together = {c.id for c in whole.decision.causes}
+        each_shows = all({c.id for c in own.causes} == together for own in judged.values())
+        # fewer rows find more by chance: nothing new but what made units differ
+        if (each_shows and len(causes) == len(together)) or {
+            c.id for c in causes
+        } - together - differ:
+            return None
     left = tuple(u for own in judged.values() for u in own.unexplained)
     decision = Decision("ambiguous" if largest[0] else "named", causes, left)
     return UnitsApart(decisions, unit, shown, decision)
 
 
-def _differ(explained: ExplainedSweep) -> bool:
-    """Whether a cause is not the same in all units, one has a gap far from the simulated one, or crosses it
-    elsewhere."""
-    if any(shares.differ for shares in explained.shares.values()):
-        return True
+def _differing(explained: ExplainedSweep) -> set[str]:
+    """Causes that units have unlike; a gap far from the simulated one, or crossed elsewhere, in one."""
     prepared, fit = explained.prepared, explained.identified.fit
+    found = {cause for cause, shares in explained.shares.items() if shares.differ}
     if any(fit.calibration_of(u).far_off(prepared.prediction) for u in range(fit.units)):
-        return True
+        found.add(CLEARANCE)
     own = [rows[~prepared.outlier[rows]] for rows in prepared.rig.history.unit_slices]
     crossings = [crossing_of(prepared, fit, rows) for rows in own]
-    return any(seen is not None and is_shifted(seen, prepared) for seen in crossings)
+    if any(seen is not None and is_shifted(seen, prepared) for seen in crossings):
+        found.add(OFFSET)
+    return found
 
 
 def _of_all(judged: Mapping[str, Decision]) -> tuple[NamedCause, ...]:

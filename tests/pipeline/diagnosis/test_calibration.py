@@ -111,7 +111,7 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
 
 
 def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: Path) -> None:
-    """Of four units one has a gap 5 of the stated deviations too wide, and is 3 % softer."""
+    """Of four units one has a gap 5 of the stated deviations too wide, and too few rows for a verdict."""
     phase = (np.arange(180) + 0.5) / 60
     torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
     compliance = (1 / 31300 + 1 / 43000) * ARCSEC_PER_RAD
@@ -122,7 +122,8 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
         own = compliance * (1.03 if unit == "D" else 1.0)
         angle = own * torque + gap / 2 * np.sign(torque) + rng.normal(0, 0.2, 180)
         rows = zip(60 * phase, phase.astype(int), torque, angle, strict=True)
-        lines += [f"{unit},{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows]
+        written = [f"{unit},{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows]
+        lines += written[:: 8 if unit == "D" else 1]
     csv = tmp_path / "units.csv"
     csv.write_text("unit,time_s,cycle,torque_Nm,angle_arcsec\n" + "".join(lines))
     found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
@@ -134,5 +135,5 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     each = {
         u: float(v.replace("\N{MINUS SIGN}", "-")) for u, v in findall(r"([A-D]) (\S+) %", softer)
     }
-    # 0.2 arcsec in 180 rows, 0.58 N·m rms about either side's mean: 0.23 % of the slope each
-    assert each["D"] - each["A"] == pytest.approx(3.0, abs=3 * 0.33)
+    # 0.2 arcsec in 23 rows, 0.58 N·m rms about either side's mean: 0.64 % of the slope
+    assert each["D"] - each["A"] == pytest.approx(3.0, abs=3 * 0.68)

@@ -148,7 +148,7 @@ def test_a_stated_stiffness_is_doubted_beside_the_units(tmp_path: Path) -> None:
 
 def test_a_turned_sign_is_no_stiffness_s_fault(tmp_path: Path) -> None:
     turned = sweep(tmp_path, Fault("angle_arcsec", lambda v: -v, "angle_arcsec"))
-    with pytest.raises(MeasurementError, match=r"turned\?$"):
+    with pytest.raises(MeasurementError, match=r"reversed\?$"):
         refuse_absurd(turned, predicted(), CASE.K_b, CASE.K_e, ("--Kb 3",))
 
 
