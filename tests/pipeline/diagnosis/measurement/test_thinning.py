@@ -65,3 +65,19 @@ def test_the_last_digit_of_a_torque_is_no_corner() -> None:
     written = History(np.round(history.torque_Nm, 3), history.unit, history.cycle, history.time_s)
     exact, short = (thinned(as_read(h, np.zeros(ROWS))) for h in (history, written))
     assert len(short) < 1.01 * len(exact)
+
+
+def test_no_unit_is_left_out_with_its_cycles() -> None:
+    """Fifty units of four cycles each, and one of many cycles beside two of one each."""
+    for cycles in ([4] * 50, [300, 1, 1]):
+        each = [(unit, cycle) for unit, many in enumerate(cycles) for cycle in range(many)]
+        rows = 150
+        turn = np.tile(np.arange(rows) / rows, len(each))
+        unit, cycle = np.repeat(np.array(each), rows, axis=0).T
+        torque = LARGEST_Nm * 2 / np.pi * np.arcsin(np.sin(2 * np.pi * turn))
+        history = History(torque, unit, cycle, 0.1 * np.arange(len(torque)))
+        short = thinned(as_read(history, np.zeros(len(torque)))).history
+        assert len(short) < len(history)
+        for number, many in enumerate(cycles):
+            kept = short.cycle[short.unit == number]
+            assert {0, many - 1} <= {*kept.tolist()}

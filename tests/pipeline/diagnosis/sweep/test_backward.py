@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, triangle
+from histories import sweep as swept
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -15,6 +16,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.structure import BackwardLoop
 from flexspline.pipeline.diagnosis.sweep.backward import backward_loop
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.loads import Loads
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.structure_words import structure_words
 
@@ -207,3 +209,17 @@ def test_a_record_without_noise_has_no_loop_of_rounding() -> None:
     for rounding in (-1e-9, 0.0, 1e-9):  # of the loop's width
         tilted = angle + rounding * np.gradient(torque)
         assert backward_loop(exact, tilted, 0.07, Noise(0.04, 0.0, 0.5)) is None
+
+
+def test_units_measured_in_turns_have_each_its_own_loads() -> None:
+    """Every torque is set on three gears one after the other: rows of a unit are three apart."""
+    history = swept(cycles=3)
+    apart = np.repeat(np.arange(len(history)), 3)
+    unit = np.tile(np.arange(3), len(history))
+    of_three = replace(history.rows(apart), unit=unit)
+    alone, each = Loads.of(history, 0.1), Loads.of(of_three, 0.1)
+    assert len(alone) > 0
+    assert [(of_three.unit[rows[0]], len(rows)) for rows in each.rows] == [
+        (u, len(rows)) for u in range(3) for rows in alone.rows
+    ]
+    assert np.array_equal(each.side, np.tile(alone.side, 3))
