@@ -32,7 +32,8 @@ WIDE = load_design(EXAMPLES / "xb1-40.toml").changed(
 )
 """With lift-off the two bodies are ± 2.2 % apart."""
 DRAWN_RATIO = 0.8302
-"""K resting over K held on tetrahedra with the holes drawn (tests/verification/test_lift_off_against_drawn_holes)."""
+"""K resting over K held on tetrahedra with the holes drawn, of
+tests/verification/test_lift_off_against_drawn_holes.py."""
 
 
 def model(design: Design, folder: Path) -> PartModel:
