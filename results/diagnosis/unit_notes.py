@@ -9,6 +9,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.words import cause_title, magnitude_words, title_of
 from flexspline.results.numbers import signed
 
@@ -35,6 +36,8 @@ def _apart_notes(apart: UnitsApart) -> list[str]:
 def _decided(own: Decision | None) -> str:
     if own is None:
         return "too few rows for a verdict"
+    if own.verdict == "unknown":
+        return structure_words(own.unexplained[0])
     return "; ".join(map(_sized, own.causes)) or "agrees with the simulation"
 
 

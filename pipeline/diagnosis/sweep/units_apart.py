@@ -36,8 +36,9 @@ class UnitsApart:
 
     Attributes
     ----------
-    decisions : of each unit, by its name; None of one with too few rows.
-    unit, shown : name and explanation of the one whose verdict is open, or whose causes are largest.
+    decisions : of each unit that was asked, by its name; None of one with too few rows.
+    unit, shown : name and explanation of the one that is read late; else of one whose verdict is open; else
+        of the one whose causes are largest.
     decision : on all of them.
     """
 
@@ -50,11 +51,12 @@ class UnitsApart:
 def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     """The units' own verdicts, where units differ and each by itself is explained.
 
+    A unit whose reading comes late is the answer, and no other is asked.
     None where one of them is not; where all rows together show the same as each unit, in about the same size;
     and where one is stiffer than the others: that may as well be the gain of its own reading.
     """
     names = whole.sweep.units
-    if not 2 <= len(names) <= MOST_UNITS:
+    if whole.misread is not None or not 2 <= len(names) <= MOST_UNITS:
         return None
     told = whole.decision.verdict != "unknown"
     differ = _differing(whole.explained) if told else set()
@@ -68,9 +70,13 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
             decisions[name] = None
             continue
         own = alone.decision
+        decisions[name] = own
+        if (
+            alone.misread is not None
+        ):  # what all rows make of one unit's late reading is none of their causes
+            return UnitsApart(decisions, name, alone, own)
         if own.verdict == "unknown":
             return None
-        decisions[name] = own
         size = own.verdict == "ambiguous", hypot(*(c.rms_arcsec for c in own.causes))
         if size > largest:
             largest, unit, shown = size, name, alone

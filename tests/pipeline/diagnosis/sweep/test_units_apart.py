@@ -14,6 +14,7 @@ from histories import sweep as swept
 import flexspline
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.structure import LateAngle
 from flexspline.pipeline.diagnosis.sweep.units_apart import of_units
 from flexspline.results.diagnosis.structure_words import structure_words
 
@@ -153,3 +154,16 @@ def test_a_gap_far_from_the_simulated_one_is_that_unit_s(tmp_path: Path) -> None
     (cause,) = outcome.causes
     assert (cause.id, cause.own_units) == ("clearance_offset", (WITH,))
     assert abs(cause.magnitude - 80.0) < 3 * cause.magnitude_std
+
+
+def test_one_unit_that_is_read_late_is_the_answer(tmp_path: Path) -> None:
+    """Its angle channel has a filter of 40 s, four rows: all rows made a soft wind-up and friction of it."""
+    rng = np.random.default_rng(10)
+    angles = {unit: angle_of(None, rng) for unit in "abc"}
+    late = angles["c"].copy()
+    for i in range(1, len(late)):
+        late[i] = late[i - 1] + (angles["c"][i] - late[i - 1]) * -np.expm1(-10 / 40)
+    outcome = outcome_of(tmp_path, {**angles, "c": late}, TORQUE, WARM)
+    assert outcome.verdict == "unknown"
+    assert not outcome.causes
+    assert isinstance(outcome.unexplained[0].structure, LateAngle)
