@@ -22,6 +22,15 @@ from flexspline.pipeline.study.study import Study
 
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
 
+TWO_WALLS = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ values = [0.38, 0.42] }}
+[objective]
+"K_b_Nm_per_rad" = "maximize"
+[run]
+method = "grid"
+"""
 GRID = f"""
 design = "xb1-40.toml"
 [vary]

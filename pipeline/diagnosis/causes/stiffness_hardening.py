@@ -160,15 +160,14 @@ class StiffnessHardening(Cause):
 
     def _slope_held(self, shape: Shape) -> float:
         """Of the law [1 per share of the largest torque], where the stiffness is as simulated."""
-        match int(shape["held"]):
-            case 0 if int(shape["law"]) != LAWS["cubic spring"]:
-                return 0.0
-            case 0 | 3:
-                return self._slope_at_the_largest(shape)
-            case 1:
-                return 1.0
-            case _:
-                return self._slope_at_zero(shape)
+        held = int(shape["held"])
+        if held == ON_THE_CHORD:
+            return 1.0
+        if held == AT_ZERO:
+            return self._slope_at_zero(shape)
+        # a cubic spring goes on to stiffen: far out is the largest torque
+        levels_off = held == FAR_OUT and int(shape["law"]) != LAWS["cubic spring"]
+        return 0.0 if levels_off else self._slope_at_the_largest(shape)
 
     @staticmethod
     def _slope_at_the_largest(shape: Shape) -> float:
@@ -180,7 +179,7 @@ class StiffnessHardening(Cause):
                 return p
             case 4:
                 return p / (1 + p)
-            case 6:  # a spring goes on to stiffen
+            case 6:
                 return (1 + p) / (1 + 3 * p)
             case _:
                 return 0.0

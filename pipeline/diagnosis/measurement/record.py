@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -74,7 +75,7 @@ class Sweep:
     def __len__(self) -> int:
         return len(self.angle_arcsec)
 
-    @property
+    @cached_property
     def encoder_step_arcsec(self) -> float:
         """Of the file's readings; 0 where there is none."""
         if self.averaging is not None:

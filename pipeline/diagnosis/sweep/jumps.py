@@ -8,9 +8,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
-from flexspline.pipeline.diagnosis.measurement.encoder_step import (
-    ROUNDING_RATIO,
-)
+from flexspline.pipeline.diagnosis.measurement.encoder_step import ROUNDING_RATIO
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep

@@ -7,9 +7,7 @@ from scipy.special import ndtr
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import steadied
-from flexspline.pipeline.diagnosis.measurement.encoder_step import (
-    ROUNDING_RATIO,
-)
+from flexspline.pipeline.diagnosis.measurement.encoder_step import ROUNDING_RATIO
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import still
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of

@@ -1,4 +1,4 @@
-"""Units under test that no common explanation holds for: each is judged by its own rows.
+"""Units under test that differ: each is judged by its own rows.
 
 One gear of three may drift, or have another position error. All rows together then show the mean of an effect
 and of none, and what that misses in each unit has no name.
@@ -24,8 +24,6 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, crossing_of
 
 USUAL_SCATTER = 0.4
 """Of the median size: by so much units of one batch may differ, friction foremost, and are told together."""
-
-
 MOST_UNITS = 12
 """That are judged each by itself: a unit takes about a second."""
 
@@ -88,10 +86,9 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     if told and not whole.decision.unexplained:
         together = {c.id for c in whole.decision.causes}
         each_shows = all({c.id for c in own.causes} == together for own in judged.values())
-        # fewer rows find more by chance: nothing new but what made units differ
-        if (each_shows and len(causes) == len(together)) or {
-            c.id for c in causes
-        } - together - differ:
+        if each_shows and len(causes) == len(together):
+            return None
+        if {c.id for c in causes} - together - differ:  # which fewer rows may find by chance
             return None
     left = tuple(u for own in judged.values() for u in own.unexplained)
     decision = Decision("ambiguous" if largest[0] else "named", causes, left)

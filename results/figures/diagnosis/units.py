@@ -30,8 +30,9 @@ def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
         shares = {c.id: shown.explained.shares.get(c.id) for c in causes}
     else:
         shares = {c.id: _sizes_apart(apart, c) for c in causes}
-    found = {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in causes}
-    return {title: own for title, own in [*found.items()][:MOST_CAUSES] if own is not None}
+    titles = {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in causes}
+    found = [(title, own) for title, own in titles.items() if own is not None]
+    return dict(found[:MOST_CAUSES])
 
 
 def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:

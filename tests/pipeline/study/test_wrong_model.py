@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
-from study_bench import WALL, study_of, threads
+from study_bench import TWO_WALLS, WALL, study_of, threads
 
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.load import load_design
@@ -17,16 +17,6 @@ from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import Solve
 from flexspline.pipeline.study.holes import holes_of
 from flexspline.pipeline.study.run import run_study, trial_store_of
-
-TEXT = f"""
-design = "xb1-40.toml"
-[vary]
-"{WALL}" = {{ values = [0.38, 0.42] }}
-[objective]
-"K_b_Nm_per_rad" = "maximize"
-[run]
-method = "grid"
-"""
 
 
 @pytest.fixture
@@ -51,7 +41,7 @@ def test_it_is_no_missing_figure(solve: Solve) -> None:
 
 @pytest.mark.usefixtures("wrong")
 def test_the_study_stops_and_keeps_no_row_of_it(tmp_path: Path) -> None:
-    study = study_of(TEXT)
+    study = study_of(TWO_WALLS)
 
     def torsion(task: Task) -> Outcome:
         return evaluate(Task(task.tables, task.values, ("torsion",)))
