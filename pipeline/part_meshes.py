@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -196,6 +196,11 @@ class PartMeshes:
     def _swept_or(self, before: MeshSpec, spec: MeshSpec, most_elements: float) -> MeshSpec:
         """`spec`, whose swept mesh is kept; or the one before, where that fails a check."""
         with self.model.context.progress.stage(f"mesh of the {self.model.name}"):
+            if self.model.context.cache.has("mesh", self._key(spec)):
+                kept = self.meshed(spec)
+                if kept.kind == "swept" and kept.mesh.elements > most_elements:
+                    raise TooManyElementsError(kept.mesh.elements, most_elements)
+                return spec if kept.kind == "swept" else before
             swept = self.swept(spec, most_elements=most_elements)
         if swept is None:
             return before
@@ -213,10 +218,14 @@ class PartMeshes:
         return self._kept(spec, lambda: self._made(spec))
 
     def _kept(self, spec: MeshSpec, make: Callable[[], MeshedPart]) -> MeshedPart:
-        """From the cache, or made; how long making it may take is no part of what is asked."""
+        """From the cache, or made."""
+        return self.model.context.cache.get("mesh", self._key(spec), make)[0]
+
+    def _key(self, spec: MeshSpec) -> Mapping[str, Any]:
+        """What a mesh is kept by; how long making it may take is no part of what is asked."""
         model, wanted = self.model, asdict(spec)
         del wanted["time_limit_s"]
-        inputs = {
+        return {
             **model.geometry_key,
             "spec": wanted,
             "states_edges": model.states_edges,
@@ -224,7 +233,6 @@ class PartMeshes:
             if self.kinds == KINDS
             else ", ".join((model.mesher, *self.kinds)),
         }
-        return model.context.cache.get("mesh", inputs, make)[0]
 
     def _made(self, spec: MeshSpec) -> MeshedPart:
         model, progress = self.model, self.model.context.progress

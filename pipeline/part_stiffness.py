@@ -18,8 +18,8 @@ from flexspline.pipeline.solid_torsion import (
     RIM_ELEMENTS,
     SECOND_SECONDS,
     TwistedPart,
-    by_fTetWild,
     copies_in_rim,
+    slow_to_confirm,
     twisted,
 )
 from flexspline.pipeline.unfilleted_shaft import may_leave_fillets_out, twisted_shaft
@@ -29,8 +29,9 @@ def part_stiffness(model: PartModel) -> Stiffness:
     """K by the design's `solver.model`: axisymmetric where the part allows it, else solid.
 
     A flexspline with bolt holes lies between two bodies of revolution: the solid model's K is held
-    within them, or, with `solver.model = "solid"`, only checked against them. Nobody waits for fTetWild where
-    the two meet the tolerance, unless `solver.mesher` names it: then the answer is theirs.
+    within them, or, with `solver.model = "solid"`, only checked against them. Nobody waits for a mesh that is
+    `slow_to_confirm` where the two meet the tolerance, unless `solver.mesher` names one: then the answer is
+    theirs.
 
     Raises
     ------
@@ -73,7 +74,8 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = torsion_enclosure(model)
     if enclosure is not None and may_answer(model):
         tolerance = model.tolerance
-        if enclosure.half_width <= tolerance and model.mesher == "auto" and by_fTetWild(model):
+        met = enclosure.half_width <= tolerance
+        if met and model.mesher == "auto" and slow_to_confirm(model):
             return enclosure
         return answered_within(enclosure, lambda: twisted_part(model).stiffness, tolerance)
     solid = twisted_part(model).stiffness

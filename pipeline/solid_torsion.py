@@ -51,6 +51,9 @@ UNLAYERED_LAST = 40_000
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
+CONFIRMING_ELEMENTS = 25_000
+"""Of a first mesh where bodies of revolution give K within the tolerance: 3 s of the processor. Thin, wide
+flanges with one to three holes had 39 303 and 62 940, for 7 and 11 s, known to ± 0.06 and 0.24 %."""
 ENCLOSED_SECONDS, FIRST_SECONDS, COARSER_FIRST = 10.0, 30.0, 4.0
 """Of fTetWild for a first mesh: where bodies of revolution give K within the tolerance and the mesh gives the
 fields only, and elsewhere; and how many times as long the edges are after that. A tall cup with one large
@@ -77,9 +80,27 @@ class TwistedPart:
     without_fillets: bool = False
 
 
-def by_fTetWild(model: PartModel) -> bool:
-    """Whether it makes the first mesh, and nobody has stated its edges."""
-    return not model.is_swept and not model.states_edges
+def slow_to_confirm(model: PartModel) -> bool:
+    """Whether fTetWild makes the first mesh, or it has more than CONFIRMING_ELEMENTS; no edges are stated.
+
+    Raises
+    ------
+    DesignError : as `PartModel.is_swept`.
+    """
+    if model.states_edges:
+        return False
+    if not model.is_swept:
+        return True
+
+    def is_large() -> bool:
+        try:
+            PartMeshes(model, most_of_first=CONFIRMING_ELEMENTS).coarsened(FIRST_ELEMENTS)
+        except TooManyElementsError:
+            return True
+        return False
+
+    inputs = {**model.geometry_key, "mesher": model.mesher, "most": CONFIRMING_ELEMENTS}
+    return model.context.cache.get("large_first_mesh", inputs, is_large)[0]
 
 
 def copies_in_rim(model: PartModel) -> int:
