@@ -89,7 +89,7 @@ def run(
         from flexspline.results.gear_words import gear_notes
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
-        from flexspline.results.report.build import write_run_page, write_run_report
+        from flexspline.results.report.build import write_run_reports
         from flexspline.results.report.content import ExtendedSum
         from flexspline.results.warned import solved_warnings
 
@@ -116,10 +116,7 @@ def run(
             pictures = write_pictures(drawings, result, job.folder, extended)
             for line in pictures.warnings:
                 tell(f"warning: {line}")
-        with job.context.progress.stage("report"):
-            files = (job.file,)
-            write_run_report(job.folder / "report.pdf", result, pictures, total, files)
-        write_run_page(job.folder / "report.html", job.context, result, pictures, total, files)
+        write_run_reports(job.folder, job.context, result, pictures, total, (job.file,))
         missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
         deliver(job, record() | missing, json)
 

@@ -6,12 +6,12 @@ What cannot be drawn is missing and everything else comes; it is not kept, so th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any
 
 from flexspline.fea.types import SolidField
 from flexspline.pipeline.analysis import RunResult
@@ -68,7 +68,7 @@ class RunDrawings:
         for process in self._processes:
             self._idle.put(process)
         self._threads = ThreadPoolExecutor(PROCESSES)
-        self._asked: list[tuple[Drawing, Future[bytes]]] = []
+        self._asked: list[tuple[Sequence[Drawing], Future[list[bytes | NotDrawnError]]]] = []
         self._small: dict[str, bytes] = {}
 
     def __enter__(self) -> RunDrawings:
@@ -83,16 +83,21 @@ class RunDrawings:
         """Load what draws parts, in its own process, while they are solved; nothing where all is drawn."""
         part = self.context.part("flexspline")
         if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
-            self._threads.submit(self._draw, load)
+            self._threads.submit(self._load)
 
     def add_field(self, name: str, field: SolidField) -> None:
-        """Begin to draw one of `RunResult.fields`."""
-        self.add(of_field(self.context, name, field))
+        """Begin to draw one of `RunResult.fields`; a picture and its view by the same process."""
+        for drawings in of_field(self.context, name, field):
+            self._begin(drawings)
 
     def add(self, drawings: Iterable[Drawing]) -> None:
         """Begin to draw these, in this order, when what was asked before has begun."""
         for drawing in drawings:
-            self._asked.append((drawing, self._threads.submit(self._drawn, drawing)))
+            self._begin([drawing])
+
+    def _begin(self, drawings: Sequence[Drawing]) -> None:
+        """Those that one process draws, one after the other."""
+        self._asked.append((drawings, self._threads.submit(self._all_drawn, drawings)))
 
     def kept_in(self, folder: Path) -> RunPictures:
         """Wait for all, and write the pictures.
@@ -102,40 +107,54 @@ class RunDrawings:
         paths: dict[str, Path] = {}
         views: dict[str, bytes] = {}
         missing: dict[str, str] = {}
-        for drawing, made in self._asked:
-            name, path = drawing.name, folder / f"{drawing.name}.png"
-            if drawing.kind == "view" and name not in paths:
-                continue  # the picture stands where scripts do not run
-            try:
-                if drawing.kind == "view":
-                    views[name] = made.result()
+        for drawings, asked in self._asked:
+            for drawing, made in zip(drawings, asked.result(), strict=True):
+                name, path = drawing.name, folder / f"{drawing.name}.png"
+                is_view = drawing.kind == "view"
+                if is_view and name not in paths:
+                    continue  # the picture stands where scripts do not run
+                if isinstance(made, NotDrawnError):
+                    missing[f"3-D view {name}" if is_view else name] = str(made)
+                    if not is_view:
+                        path.unlink(missing_ok=True)
+                elif is_view:
+                    views[name] = made
                 else:
-                    write_bytes(path, made.result())
+                    write_bytes(path, made)
                     paths[name] = path
-            except NotDrawnError as error:
-                if drawing.kind == "view":
-                    missing[f"3-D view {name}"] = str(error)
-                else:
-                    missing[name] = str(error)
-                    path.unlink(missing_ok=True)
         return RunPictures(paths, self._small, views, missing)
 
-    def _draw(self, write: Callable[..., None], *arguments: Any) -> bytes:
+    @contextmanager
+    def _process(self) -> Iterator[DrawingProcess]:
         process = self._idle.get()  # there is one for each thread
         try:
-            return process.draw(write, *arguments)
+            yield process
         finally:
             self._idle.put(process)
 
-    def _drawn(self, drawing: Drawing) -> bytes:
+    def _load(self) -> None:
+        with self._process() as process:
+            process.draw(load)
+
+    def _all_drawn(self, drawings: Sequence[Drawing]) -> list[bytes | NotDrawnError]:
+        made: list[bytes | NotDrawnError] = []
+        with self._process() as process:
+            for drawing in drawings:
+                try:
+                    made.append(self._drawn(process, drawing))
+                except NotDrawnError as error:
+                    made.append(error)
+        return made
+
+    def _drawn(self, process: DrawingProcess, drawing: Drawing) -> bytes:
         def make() -> bytes:
             if drawing.kind in NOTED:
                 self.context.progress.note(f"  {NOTED[drawing.kind]} {drawing.name}")
-            return self._draw(drawing.write, *drawing.arguments)
+            return process.draw(drawing.write, *drawing.arguments)
 
         made, _ = self.context.cache.get(STAGE, drawing.key, make)
         if drawing.kind == "part":
-            self._small[drawing.name] = self._drawn(small(made))
+            self._small[drawing.name] = self._drawn(process, small(made))
         return made
 
 

@@ -19,6 +19,7 @@ from flexspline.results.renders.picture_elements import (
     stress_note,
     wires,
 )
+from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import Shot, View, shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
 from flexspline.results.renders.surface import crease_edges, lines, skin
@@ -84,6 +85,7 @@ class _Scene:
     said: Said
 
 
+@remembered(1)
 def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
     whole = whole_part(field.mesh, field.displacement, field.mises, "symmetric")
     shown = skin(whole)

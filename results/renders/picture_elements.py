@@ -45,7 +45,7 @@ def stress_layers(
     points: np.ndarray, mises: np.ndarray, shown: Skin, peak: StressPeak, line: float = 2.4
 ) -> list[Layer]:
     """The skin coloured by von Mises stress from 0 to the reported peak, with its creases."""
-    skin_mesh = surface(points, shown.facets)
+    skin_mesh = surface(points, shown.facets).copy(deep=False)
     skin_mesh.point_data["mises"] = mises[skin_mesh.point_data["node"]]
     options = {
         "scalars": "mises",

@@ -16,6 +16,7 @@ from flexspline.results.renders.picture_elements import (
     stress_layers,
     stress_note,
 )
+from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.surface import opening, skin
@@ -58,6 +59,7 @@ def write_turning_torque_stress(
     path.write_bytes(turning_torque_stress(field, part_name, torque_Nm))
 
 
+@remembered(1)
 def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
     whole = whole_part(field.mesh, field.displacement, field.mises, "antisymmetric")
     cut = opening(field.mesh.sector_deg)
@@ -68,6 +70,7 @@ def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
     )
 
 
+@remembered(1)
 def _said(
     field: SolidField, whole: WholePart, main: Seen, inset: Seen, part_name: str, torque_Nm: float
 ) -> Said:

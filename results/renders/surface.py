@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.fea.solid.whole import FACES, WholePart
 from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.results.renders.remembered import remembered
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -17,6 +18,8 @@ FOUR_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """A six-node facet (corners, then middles of 01, 12, 20) as four flat triangles."""
 CREASE_DEG = 30.0
 """Facets that turn by more than this meet in a drawn edge."""
+VIEWS = 2
+"""Of a part in a picture: large and small."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,7 @@ def _cell_angle(part: WholePart) -> np.ndarray:
     return np.degrees(np.arctan2(centre[:, 1], centre[:, 0]))
 
 
+@remembered(VIEWS)
 def surface(points: np.ndarray, facets: np.ndarray, curved: bool = True) -> pv.PolyData:
     """Triangles over the facets' own nodes; point array "node" keeps each point's node index.
 
@@ -107,6 +111,7 @@ def creases(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
     return lines(points, crease_edges(points, facets))
 
 
+@remembered(VIEWS)
 def crease_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
     """Nodes (k, 3) of those edges: corner, middle, corner."""
     edges = _edges(facets)

@@ -11,4 +11,4 @@ def write_webp(path: Path, png: bytes) -> None:
     from PIL import Image
 
     with Image.open(io.BytesIO(png)) as image:
-        image.convert("RGB").save(path, "WEBP", quality=82, method=4)
+        image.convert("RGB").save(path, "WEBP", quality=82, method=2)

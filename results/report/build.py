@@ -8,7 +8,9 @@ from pathlib import Path
 from flexspline import __version__
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.two_threads import beside
 from flexspline.results.atomic import write_bytes
+from flexspline.results.file_names import REPORT
 from flexspline.results.pictures import RunPictures
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.content import ExtendedSum, ReportContent
@@ -17,6 +19,30 @@ from flexspline.results.report.sections import run_document
 from flexspline.results.report.versions import library_versions
 from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
+
+
+def write_run_reports(
+    folder: Path,
+    context: AnalysisContext,
+    result: RunResult,
+    pictures: RunPictures,
+    extended: ExtendedSum | None = None,
+    attached: tuple[Attachment, ...] = (),
+) -> None:
+    """`report.pdf` and `report.html`, at once: typst needs no Python.
+
+    Raises
+    ------
+    ReportError, OSError : as of each.
+    """
+    told = result, pictures, extended, attached
+
+    def page() -> None:
+        write_run_page(folder / f"{REPORT}.html", *told)
+
+    with context.progress.stage("report"), beside(context.progress, [page]) as rest:
+        write_run_report(folder / f"{REPORT}.pdf", *told)
+        rest()
 
 
 def write_run_report(
@@ -32,7 +58,6 @@ def write_run_report(
 
 def write_run_page(
     path: Path,
-    context: AnalysisContext,
     result: RunResult,
     pictures: RunPictures,
     extended: ExtendedSum | None = None,
@@ -44,8 +69,7 @@ def write_run_page(
     for name, source in content.pictures.items():
         image = png(source)
         images[name] = replace(image, data=pictures.small.get(name, image.data))
-    with context.progress.stage("report.html"):
-        write_bytes(path, page_of(run_document(content), images, pictures.views))
+    write_bytes(path, page_of(run_document(content), images, pictures.views))
 
 
 def report_content(

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from PIL import Image
 
 TOUCH_PT = 0.5
 """Points by which boxes may reach into each other: a text's box has that much air about its ink."""
@@ -23,19 +22,19 @@ PALE = 0.25
 @contextmanager
 def drawn_figures():
     """The list of figures that are saved while this is open, each as a blank sheet: `faults` draws it."""
-    from matplotlib.figure import Figure
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    found, save = [], Figure.savefig
+    found, draw = [], FigureCanvasAgg.draw
 
-    def kept(figure, file, **_):
-        found.append(figure)
-        Image.new("1", (1, 1)).save(file, "png")
+    def kept(canvas):
+        found.append(canvas.figure)
 
-    Figure.savefig = kept
+    blank, pixels = np.zeros((1, 1, 4), np.uint8), FigureCanvasAgg.buffer_rgba
+    FigureCanvasAgg.draw, FigureCanvasAgg.buffer_rgba = kept, lambda _: blank
     try:
         yield found
     finally:
-        Figure.savefig = save
+        FigureCanvasAgg.draw, FigureCanvasAgg.buffer_rgba = draw, pixels
 
 
 @dataclass(frozen=True)
