@@ -1,6 +1,6 @@
 """What the lobes and the wave generator do to the flexspline's rim: axisymmetric, solid, or the fast model.
 
-Commands, studies and the live page take their load cases of the rim from `CASES`.
+Commands, studies and the live page solve the load cases of `rim_case` by `CASES`.
 """
 
 from __future__ import annotations
@@ -26,24 +26,23 @@ from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.refining import Refining
-from flexspline.pipeline.revolved import RimSolve, contact, free_rim, held_rim, rim
-from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
+from flexspline.pipeline.revolved import contact, rim
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
 
 @dataclass(frozen=True)
-class LoadCase:
-    """How one load case of the rim is solved, and what it is called while it is.
+class RimModels:
+    """How one load case of the rim is solved.
 
     `solid` takes the part and, as `known`, the relative half-width of the bounds that two bodies of
     revolution give. It is None where no solid model is; then `with_holes` answers for parts with bolt holes.
     `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
-    title: str
     revolved: Callable[[PartModel], Stiffness]
-    solid: Callable[..., Stiffness] | None
     fast: Callable[[Part, float], Stiffness]
+    solid: Callable[..., Stiffness] | None = None
     with_holes: Callable[[PartModel], Stiffness] | None = None
 
 
@@ -67,7 +66,7 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
         return asked.with_holes(flexspline)
     if asked.solid is None:
         raise ComputationError(
-            f"{asked.title} ({case}) is solved on the meridian only: not with solver.model ="
+            f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
     if may_answer(flexspline):
@@ -98,9 +97,7 @@ def _expected(flexspline: PartModel) -> float:
     return torsion.half_width if torsion else inf
 
 
-def _by_itself(
-    case: RimCase, title: str, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
-) -> LoadCase:
+def _by_itself(case: RimCase, solve: RimSolve) -> RimModels:
     """A case that `solve` answers on a meridian without another case's answer."""
 
     def of_part(flexspline: PartModel) -> Stiffness:
@@ -108,11 +105,11 @@ def _by_itself(
         return by_harmonics(
             flexspline,
             figure_of(case),
-            title,
+            RIM_CASES[case].title,
             lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
         )
 
-    return LoadCase(title, of_part, solid, lambda part, width: rim(part, solve, width))
+    return RimModels(of_part, lambda part, width: rim(part, solve, width), _SOLID.get(case))
 
 
 def _resting(flexspline: PartModel) -> Stiffness:
@@ -120,7 +117,7 @@ def _resting(flexspline: PartModel) -> Stiffness:
     return by_harmonics(
         flexspline,
         figure_of("lobes_contact"),
-        CASES["lobes_contact"].title,
+        RIM_CASES["lobes_contact"].title,
         lambda outline, deadline: contact_stiffness(
             outline, own, held, deadline, flexspline.tolerance
         ),
@@ -137,17 +134,13 @@ def _resting_with_holes(flexspline: PartModel) -> Stiffness:
     )
 
 
-CASES: Mapping[RimCase, LoadCase] = {
-    "lobes": _by_itself("lobes", "lobes", held_rim, partial(solid_lobes, supported=True)),
-    "lobes_contact": LoadCase(
-        "lobes, rim resting on the seat", _resting, None, contact, _resting_with_holes
-    ),
-    "lobes_unsupported": _by_itself(
-        "lobes_unsupported",
-        "lobes, rim unsupported",
-        free_rim,
-        partial(solid_lobes, supported=False),
-    ),
+_SOLID: Mapping[RimCase, Callable[..., Stiffness]] = {
+    "lobes": partial(solid_lobes, supported=True),
+    "lobes_unsupported": partial(solid_lobes, supported=False),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
+CASES: Mapping[RimCase, RimModels] = {
+    **{name: _by_itself(name, case.solve) for name, case in RIM_CASES.items() if case.solve},
+    "lobes_contact": RimModels(_resting, contact, with_holes=_resting_with_holes),
+}
 SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)
