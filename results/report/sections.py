@@ -120,7 +120,7 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     rows = [
         (
             (bold(a["name"]) if i == 0 else worded(a["name"]))
-            + note(worded(a["note"]))
+            + (note(worded(a["note"])) if a["note"] else ())
             + (note(alarm(a["alarm"])) if a.get("alarm") else ()),
             symbol(a["symbol"]),
             bold(a["value"]),
