@@ -18,6 +18,7 @@ from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.enclosed_part import (
     PartSolver,
     enclosure_if_any,
+    enclosure_of,
     has_enclosure,
     may_answer,
 )
@@ -50,8 +51,8 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     """K_b of one lobe case, by the model that the part's stiffness uses.
 
     A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
-    the solid model is asked for by name, its K is only checked against them. Lift-off with holes is theirs
-    under any setting, helped by K held of the part where they are far apart.
+    the solid model is asked for by name, its K is only checked against them. A case without a solid model is
+    theirs under any setting; lift-off is helped by K held of the part where they are far apart.
 
     Raises
     ------
@@ -97,7 +98,9 @@ def _expected(flexspline: PartModel) -> float:
     return torsion.half_width if torsion else inf
 
 
-def _by_itself(case: RimCase, solve: RimSolve) -> RimModels:
+def by_itself(
+    case: RimCase, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
+) -> RimModels:
     """A case that `solve` answers on a meridian without another case's answer."""
 
     def of_part(flexspline: PartModel) -> Stiffness:
@@ -109,7 +112,13 @@ def _by_itself(case: RimCase, solve: RimSolve) -> RimModels:
             lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
         )
 
-    return RimModels(of_part, lambda part, width: rim(part, solve, width), _SOLID.get(case))
+    def enclosure(flexspline: PartModel) -> Stiffness:
+        return enclosure_of(flexspline, of_part, _expected(flexspline))
+
+    def fast(part: Part, width: float) -> Stiffness:
+        return rim(part, solve, width)
+
+    return RimModels(of_part, fast, solid, None if solid else enclosure)
 
 
 def _resting(flexspline: PartModel) -> Stiffness:
@@ -140,7 +149,11 @@ _SOLID: Mapping[RimCase, Callable[..., Stiffness]] = {
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
 CASES: Mapping[RimCase, RimModels] = {
-    **{name: _by_itself(name, case.solve) for name, case in RIM_CASES.items() if case.solve},
+    **{
+        name: by_itself(name, case.solve, _SOLID.get(name))
+        for name, case in RIM_CASES.items()
+        if case.solve is not None
+    },
     "lobes_contact": RimModels(_resting, contact, with_holes=_resting_with_holes),
 }
 SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)
