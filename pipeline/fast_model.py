@@ -16,9 +16,9 @@ from flexspline.pipeline.ellipse_peak import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.gear import GearCurve, curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
-from flexspline.pipeline.revolved import first_rim, held_rim, stiffness, with_equivalent_ring
+from flexspline.pipeline.revolved import first_rim, stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
-from flexspline.pipeline.rim_case import RimCase
+from flexspline.pipeline.rim_case import RimCase, held_rim
 from flexspline.pipeline.stress_limits import StressCase
 
 

@@ -1,6 +1,6 @@
 """What the lobes and the wave generator do to the flexspline's rim: axisymmetric, solid, or the fast model.
 
-Commands, studies and the live page take their load cases of the rim from `CASES`.
+Commands, studies and the live page solve the load cases of `rim_case` by `CASES`.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.enclosed_part import (
     PartSolver,
     enclosure_if_any,
+    enclosure_of,
     has_enclosure,
     may_answer,
 )
@@ -26,24 +27,23 @@ from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.refining import Refining
-from flexspline.pipeline.revolved import RimSolve, contact, free_rim, held_rim, rim
-from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
+from flexspline.pipeline.revolved import contact, rim
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
 
 @dataclass(frozen=True)
-class LoadCase:
-    """How one load case of the rim is solved, and what it is called while it is.
+class RimModels:
+    """How one load case of the rim is solved.
 
     `solid` takes the part and, as `known`, the relative half-width of the bounds that two bodies of
     revolution give. It is None where no solid model is; then `with_holes` answers for parts with bolt holes.
     `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
-    title: str
     revolved: Callable[[PartModel], Stiffness]
-    solid: Callable[..., Stiffness] | None
     fast: Callable[[Part, float], Stiffness]
+    solid: Callable[..., Stiffness] | None = None
     with_holes: Callable[[PartModel], Stiffness] | None = None
 
 
@@ -51,8 +51,8 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     """K_b of one lobe case, by the model that the part's stiffness uses.
 
     A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
-    the solid model is asked for by name, its K is only checked against them. Lift-off with holes is theirs
-    under any setting, helped by K held of the part where they are far apart.
+    the solid model is asked for by name, its K is only checked against them. A case without a solid model is
+    theirs under any setting; lift-off is helped by K held of the part where they are far apart.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
         return asked.with_holes(flexspline)
     if asked.solid is None:
         raise ComputationError(
-            f"{asked.title} ({case}) is solved on the meridian only: not with solver.model ="
+            f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
     if may_answer(flexspline):
@@ -98,9 +98,9 @@ def _expected(flexspline: PartModel) -> float:
     return torsion.half_width if torsion else inf
 
 
-def _by_itself(
-    case: RimCase, title: str, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
-) -> LoadCase:
+def by_itself(
+    case: RimCase, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
+) -> RimModels:
     """A case that `solve` answers on a meridian without another case's answer."""
 
     def of_part(flexspline: PartModel) -> Stiffness:
@@ -108,11 +108,17 @@ def _by_itself(
         return by_harmonics(
             flexspline,
             figure_of(case),
-            title,
+            RIM_CASES[case].title,
             lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
         )
 
-    return LoadCase(title, of_part, solid, lambda part, width: rim(part, solve, width))
+    def enclosure(flexspline: PartModel) -> Stiffness:
+        return enclosure_of(flexspline, of_part, _expected(flexspline))
+
+    def fast(part: Part, width: float) -> Stiffness:
+        return rim(part, solve, width)
+
+    return RimModels(of_part, fast, solid, None if solid else enclosure)
 
 
 def _resting(flexspline: PartModel) -> Stiffness:
@@ -120,7 +126,7 @@ def _resting(flexspline: PartModel) -> Stiffness:
     return by_harmonics(
         flexspline,
         figure_of("lobes_contact"),
-        CASES["lobes_contact"].title,
+        RIM_CASES["lobes_contact"].title,
         lambda outline, deadline: contact_stiffness(
             outline, own, held, deadline, flexspline.tolerance
         ),
@@ -137,17 +143,17 @@ def _resting_with_holes(flexspline: PartModel) -> Stiffness:
     )
 
 
-CASES: Mapping[RimCase, LoadCase] = {
-    "lobes": _by_itself("lobes", "lobes", held_rim, partial(solid_lobes, supported=True)),
-    "lobes_contact": LoadCase(
-        "lobes, rim resting on the seat", _resting, None, contact, _resting_with_holes
-    ),
-    "lobes_unsupported": _by_itself(
-        "lobes_unsupported",
-        "lobes, rim unsupported",
-        free_rim,
-        partial(solid_lobes, supported=False),
-    ),
+_SOLID: Mapping[RimCase, Callable[..., Stiffness]] = {
+    "lobes": partial(solid_lobes, supported=True),
+    "lobes_unsupported": partial(solid_lobes, supported=False),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
+CASES: Mapping[RimCase, RimModels] = {
+    **{
+        name: by_itself(name, case.solve, _SOLID.get(name))
+        for name, case in RIM_CASES.items()
+        if case.solve is not None
+    },
+    "lobes_contact": RimModels(_resting, contact, with_holes=_resting_with_holes),
+}
 SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)

@@ -10,19 +10,17 @@ another material, torque or clearance costs nothing, and a change of one part le
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
-from flexspline.fea.axisymmetric.lobes import lobe_stiffnesses
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
-from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.deadline import NO_DEADLINE
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.material import Material
-from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.cache import Cache
@@ -31,6 +29,7 @@ from flexspline.pipeline.enclosure import enclosed
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.refining import Refining
+from flexspline.pipeline.rim_case import RimSolve, free_rim, held_rim
 from flexspline.pipeline.storage import cache_folder
 
 KEPT_PARTS = 512
@@ -43,22 +42,6 @@ FIRST_HALF_WIDTH = 0.04
 """Of a first answer's bounds, relative. On one mesh, its estimate times 2.7, those of 6 of 207 extreme
 designs did not hold, of 5.8 % and more; so far, times 4, all hold, K is within 2.4 %, and one mesh is enough
 for 134."""
-RimSolve = Callable[[Meridian, Elastic, float, Deadline], Iterator[Stiffness]]
-"""K_b of a body of revolution in a load case of its rim, by each mesh until its bounds are near enough."""
-
-
-def held_rim(
-    outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
-) -> Iterator[Stiffness]:
-    """The lobe load, the seat held radially."""
-    return lobe_stiffnesses(outline, material, True, relative_width, deadline)
-
-
-def free_rim(
-    outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
-) -> Iterator[Stiffness]:
-    """The lobe load, the seat free."""
-    return lobe_stiffnesses(outline, material, False, relative_width, deadline)
 
 
 def revolved(design: Design) -> Design:

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Literal
-
-import numpy as np
 
 from flexspline.fea.types import SolidField
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.analysis import RunResult
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD, angle_rad
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
+from flexspline.pipeline.packing import packed
 from flexspline.pipeline.parts import AnalysisContext
-from flexspline.results.figures.budget import write_budget
-from flexspline.results.figures.convergence import write_convergence
-from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
-from flexspline.results.figures.torque_angle import drawn_branch, write_torque_angle
-from flexspline.results.file_names import BUDGET, CONVERGENCE, CURVE, ELLIPSE, LOADS, TORQUE_ANGLE
+from flexspline.results.figures.chart import chart
+from flexspline.results.file_names import CHARTS, ELLIPSE
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.mesh_picture import write_mesh_picture
 from flexspline.results.renders.stress_picture import (
@@ -92,35 +87,18 @@ def of_field(
 
 def small(png: bytes) -> Drawing:
     """A picture as WebP."""
-    return Drawing("webp", "small", {"sha256": hashlib.sha256(png).hexdigest()}, write_webp, (png,))
+    return Drawing("webp", "small", {"sha256": _digest(png)}, write_webp, (png,))
 
 
 def charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterator[Drawing]:
-    """The charts; without `CONVERGENCE` where every stiffness was solved on one mesh."""
-    design, found, backlash = result.design, result.stiffnesses, result.backlash
-    torque = design.load.torque_Nm
-    K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad
-    solved = {"K_b_Nm_per_rad": found.K_b, "K_e_Nm_per_rad": found.K_e}
-    settling = {key: K for key, K in solved.items() if len(K.levels) > 1}
+    """The charts that have something to show; each is kept by all that it is drawn from."""
+    for name in CHARTS:
+        one = chart(name)
+        arguments = one.arguments(result, extended)
+        if arguments is not None:
+            inputs = {"sha256": _digest(packed(arguments))}
+            yield Drawing(name, "chart", inputs, one.write, arguments)
 
-    def angle(torque: np.ndarray) -> np.ndarray:
-        return np.asarray(angle_rad(design, torque, K_b, K_e)) * ARCSEC_PER_RAD
 
-    def chart(
-        name: str, inputs: Mapping[str, Any], write: Callable[..., None], *shown: Any
-    ) -> Drawing:
-        return Drawing(name, "chart", inputs, write, shown)
-
-    sums = {"backlash": asdict(backlash), "torque_Nm": torque}
-    added = None if extended is None else asdict(extended)
-    yield chart(BUDGET, {**sums, "extended": added}, write_budget, backlash, extended)
-    branch = drawn_branch(angle, torque)
-    yield chart(
-        TORQUE_ANGLE, {**sums, "K": [K_b, K_e]}, write_torque_angle, branch, torque, backlash
-    )
-    if result.gear is not None:
-        for name, write in ((CURVE, write_gear_angle), (LOADS, write_gear_loads)):
-            yield chart(name, {"curve": asdict(result.gear)}, write, result.gear)
-    if settling:
-        levels = {key: asdict(K) for key, K in settling.items()}
-        yield chart(CONVERGENCE, levels, write_convergence, settling)
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

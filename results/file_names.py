@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from itertools import chain
+from typing import Literal
 
 from flexspline.geometry.part_name import PART_NAMES
 
@@ -15,10 +17,18 @@ REPORT = "report"
 ELLIPSE = "wave_generator"
 RENDERED = (*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torque")), ELLIPSE)
 """Pictures of a run that VTK draws."""
-CHARTS = BUDGET, TORQUE_ANGLE, CONVERGENCE, CURVE, LOADS = (
-    "backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads",
-)  # fmt: skip
-"""Pictures of a run that matplotlib draws, `CONVERGENCE` where there is any; two of the whole gear."""
+CURVE, LOADS = "gear_torque_angle", "gear_loads"
+"""Charts of `gear` and of a run."""
+ChartSection = Literal["budget", "gear", "stress", "solver"]
+CHARTS_OF: Mapping[ChartSection, tuple[str, ...]] = {
+    "budget": ("backlash_budget", "torque_angle"),
+    "gear": (CURVE, LOADS),
+    "stress": (),
+    "solver": ("convergence",),
+}
+"""Pictures of a run that matplotlib draws, by the section of the report and in their order there;
+`figures/NAME.py` draws the one called NAME, and has its caption."""
+CHARTS = tuple(chain.from_iterable(CHARTS_OF.values()))
 FORMATS = ("msh", "med", "bdf", "inp", "vtu", "xdmf")
 """Of `export --format`, by suffix."""
 GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
@@ -45,7 +55,7 @@ RUN = (*ONE_RECORD, *_reports(REPORT), *_pictures(*RENDERED, *CHARTS))
 GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
 STUDY = (
     "study.db", "study.csv", "study.parquet", BEST_DESIGN, BEST_STRESS, *_reports(REPORT),
-    *_pictures("pareto", "best", "parallel", CONVERGENCE, "tolerance"),
+    *_pictures("pareto", "best", "parallel", "convergence", "tolerance"),
 )  # fmt: skip
 
 

@@ -13,7 +13,8 @@ from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.atomic import write_together
-from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
+from flexspline.results.figures.gear_loads import write_gear_loads
+from flexspline.results.figures.gear_torque_angle import write_gear_angle
 from flexspline.results.file_names import CURVE, GEAR_CSV, GEAR_RECORD, LOADS
 from flexspline.results.gear_words import gear_warnings
 from flexspline.results.records import as_json, gear_figures, heading

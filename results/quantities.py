@@ -7,6 +7,10 @@ The whole gear's part of the table stands in `gear_quantities.py`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import chain
+
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.results.gear_quantities import GEAR_QUANTITIES
 from flexspline.results.quantity import STIFFNESS_UNIT, Quantity
 
@@ -35,6 +39,40 @@ def _stiffness(
     )
 
 
+_RIM_WORDS: Mapping[RimCase, tuple[str, str, str, str, str]] = {
+    "lobes": (
+        "K_b,lobes",
+        "Flexspline stiffness, torque at the two lobes (lobes)",
+        "load at two lobes",
+        "flexspline stiffness (lobes)",
+        "cos² traction within ±30° of the major axis, seat held radially",
+    ),
+    "lobes_contact": (
+        "K_b,contact",
+        "Flexspline stiffness, torque at the two lobes, rim may lift off",
+        "lobes, rim may lift",
+        "flexspline stiffness, lobes, rim may lift off",
+        "same traction, the rim rests on the seat and may lift off",
+    ),
+    "lobes_unsupported": (
+        "K_b,free",
+        "Flexspline stiffness, torque at the two lobes, rim unsupported",
+        "lobes, rim free",
+        "flexspline stiffness, lobes, rim unsupported",
+        "same traction, nothing on the seat",
+    ),
+}
+"""As of `_stiffness`, from its symbol on: of load cases that have more to say than their title."""
+
+
+def _of_rim_case(case: RimCase) -> tuple[Quantity, Quantity]:
+    """A load case's own words, else those that its title gives."""
+    title, index = RIM_CASES[case].title, case.replace("_", " ")
+    name = f"Flexspline stiffness, {title}"
+    usual = (f"K_b,{index}", name, title, name[0].lower() + name[1:], "")
+    return _stiffness(figure_of(case), 4, *_RIM_WORDS.get(case, usual))
+
+
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("design", "", "Design", kind="text"),
     Quantity("version", "", "Program version", kind="text"),
@@ -47,33 +85,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "flexspline stiffness (uniform)",
         "ring turned rigidly, mount held",
     ),
-    *_stiffness(
-        "K_b_lobes",
-        4,
-        "K_b,lobes",
-        "Flexspline stiffness, torque at the two lobes (lobes)",
-        "load at two lobes",
-        "flexspline stiffness (lobes)",
-        "cos² traction within ±30° of the major axis, seat held radially",
-    ),
-    *_stiffness(
-        "K_b_lobes_contact",
-        4,
-        "K_b,contact",
-        "Flexspline stiffness, torque at the two lobes, rim may lift off",
-        "lobes, rim may lift",
-        "flexspline stiffness, lobes, rim may lift off",
-        "same traction, the rim rests on the seat and may lift off",
-    ),
-    *_stiffness(
-        "K_b_lobes_unsupported",
-        4,
-        "K_b,free",
-        "Flexspline stiffness, torque at the two lobes, rim unsupported",
-        "lobes, rim free",
-        "flexspline stiffness, lobes, rim unsupported",
-        "same traction, nothing on the seat",
-    ),
+    *chain.from_iterable(map(_of_rim_case, RIM_CASES)),
     *_stiffness(
         "K_e",
         5,

@@ -50,7 +50,7 @@ class Quantity:
     @property
     def mathtext(self) -> str:
         """The symbol for matplotlib, index upright."""
-        letter, _, index = self.symbol.partition("_")
+        letter, _, index = self.symbol.replace(" ", r"\ ").partition("_")
         return f"${letter}_{{\\mathrm{{{index}}}}}$" if index else f"${letter}$"
 
     @property

@@ -54,4 +54,4 @@ def test_every_symbol_of_a_step_is_defined_in_a_file_that_the_step_names(step: s
 
 def test_the_check_reads_the_steps() -> None:
     named = {m[1] for step in STEPS for w in CODE.findall(step) if (m := SYMBOL.fullmatch(w))}
-    assert {"RimCase", "CASES", "PEAK_OF", "CHARTS", "WRITERS"} <= named
+    assert {"RimCase", "CASES", "PEAK_OF", "CHARTS_OF", "WRITERS"} <= named

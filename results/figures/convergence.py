@@ -7,12 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexspline.fea.types import Stiffness
+from flexspline.results.figures.chart import Chart
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from flexspline.pipeline.analysis import RunResult
+    from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 
 _MARGIN = 1.5
 """The axis goes on by this factor beyond the coarsest and the finest mesh."""
@@ -68,3 +72,23 @@ def _apart(dofs: list[int]) -> list[int]:
         if not kept or kept[-1] / d > near:
             kept.append(d)
     return kept[::-1]
+
+
+def _settling(
+    run: RunResult, extended: ExtendedBacklash | None
+) -> tuple[dict[str, Stiffness]] | None:
+    """None where every stiffness was solved on one mesh."""
+    found = run.stiffnesses
+    solved = {"K_b_Nm_per_rad": found.K_b, "K_e_Nm_per_rad": found.K_e}
+    settling = {key: K for key, K in solved.items() if len(K.levels) > 1}
+    return (settling,) if settling else None
+
+
+CHART = Chart(
+    write=write_convergence,
+    arguments=_settling,
+    caption=lambda content: (
+        "Stiffness against the number of unknowns, as difference from the value reported."
+    ),
+    width_pct=88,
+)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad
+from flexspline.results.figures.chart import Chart
 from flexspline.results.figures.words import GROUND, angle_title, keep_inside, torque_title
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from flexspline.pipeline.analysis import RunResult
+    from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 
 DRAWN_RATIO = 1.25
 """How far beyond ±T_L the line is drawn."""
@@ -141,3 +145,24 @@ def _span(axes: Axes, x: float, low: float, high: float) -> None:
             "mutation_scale": 13,
         },
     )
+
+
+def _of_run(run: RunResult, extended: ExtendedBacklash | None) -> tuple[Any, ...]:
+    design, found = run.design, run.stiffnesses
+    K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad
+
+    def angle(torque: np.ndarray) -> np.ndarray:
+        return np.asarray(angle_rad(design, torque, K_b, K_e)) * ARCSEC_PER_RAD
+
+    load = design.load.torque_Nm
+    return drawn_branch(angle, load), load, run.backlash
+
+
+CHART = Chart(
+    write=write_torque_angle,
+    arguments=_of_run,
+    caption=lambda content: (
+        "The torque–angle line of the model. Within the gap the output lies anywhere."
+    ),
+    width_pct=54,
+)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.results.doubt import spread_sentence
-from flexspline.results.file_names import BUDGET, TORQUE_ANGLE
 from flexspline.results.quantities import quantity
 from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
@@ -16,10 +15,9 @@ from flexspline.results.report.document import (
     FormulaNode,
     Heading,
     Paragraph,
-    Picture,
     Table,
 )
-from flexspline.results.report.picture_blocks import shown
+from flexspline.results.report.picture_blocks import shown_charts
 from flexspline.results.report.spans import Words, plain, symbol
 
 EXTENDED = "extended.total_arcsec"
@@ -81,7 +79,6 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         caption=f"The four terms and their sum; {spread_sentence(content.backlash)}.",
         strong=len(rows) - 1,
     )  # fmt: skip
-    shown_below = ""
     if content.extended is not None:
         model, total = content.extended.model, content.extended.total_arcsec
         more, text = total - content.backlash.total_arcsec, quantity(EXTENDED).text
@@ -92,12 +89,4 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
                 f"{text(abs(more))} arcsec. No standard deviation is computed for this sum."
             )
         )
-        shown_below = f" Below the simulated sum: what the model in {model} adds."
-    stated = content.backlash.std_arcsec is not None
-    terms = plain(
-        "The terms as they add up"
-        + (", the total with one standard deviation, and its sources." if stated else ".")
-    )
-    line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture(BUDGET, terms + plain(shown_below), 62))
-    yield from shown(content, roomy, Picture(TORQUE_ANGLE, line, 54))
+    yield from shown_charts(content, roomy, "budget")

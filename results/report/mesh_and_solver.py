@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
-from flexspline.results.file_names import CONVERGENCE
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Picture, Table
-from flexspline.results.report.picture_blocks import shown
+from flexspline.results.report.picture_blocks import shown, shown_charts
 from flexspline.results.report.spans import NBSP, Words, bold, plain, symbol, worded
 
 GUARANTEED = bounds_kind(True)
@@ -47,8 +46,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         yield Paragraph(
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
         )
-    convergence = "Stiffness against the number of unknowns, as difference from the value reported."
-    yield from shown(content, roomy, Picture(CONVERGENCE, convergence, 88))
+    yield from shown_charts(content, roomy, "solver")
     stages = content.stage_seconds or {}
     if stages:
         each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())

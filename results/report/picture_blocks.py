@@ -1,13 +1,22 @@
-"""Which of a report's pictures there are, and why one is not."""
+"""The charts of a section, and which of its pictures there are, or why one is not."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
 
+from flexspline.results.figures.chart import chart
+from flexspline.results.file_names import CHARTS_OF, ChartSection
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import Block, Callout, Picture, Pictures
 from flexspline.results.report.spans import bold, plain
+
+
+def shown_charts(content: ReportContent, roomy: bool, section: ChartSection) -> Iterable[Block]:
+    """Those of `CHARTS_OF` a section, one below another."""
+    for name in CHARTS_OF[section]:
+        one = chart(name)
+        yield from shown(content, roomy, Picture(name, one.caption(content), one.width_pct))
 
 
 def shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Block]:

@@ -1,4 +1,5 @@
-"""The report of a run, section by section: every word of it stands here, in limits or in tables."""
+"""The report of a run, section by section: its words stand here, in this folder's other files and, below a
+chart, in the file that draws it."""
 
 from __future__ import annotations
 
@@ -26,7 +27,7 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.mesh_and_solver import mesh_and_solver
-from flexspline.results.report.picture_blocks import shown
+from flexspline.results.report.picture_blocks import shown, shown_charts
 from flexspline.results.report.spans import (
     NBSP,
     Words,
@@ -119,7 +120,7 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     rows = [
         (
             (bold(a["name"]) if i == 0 else worded(a["name"]))
-            + note(worded(a["note"]))
+            + (note(worded(a["note"])) if a["note"] else ())
             + (note(alarm(a["alarm"])) if a.get("alarm") else ()),
             symbol(a["symbol"]),
             bold(a["value"]),
@@ -187,6 +188,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Picture("shaft_torque", plain("Output shaft") + under + at, view="shaft_torque"),
         ),
         *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
+        *shown_charts(content, roomy, "stress"),
     ]
     if found:
         yield Heading("Stress and deformation")

@@ -6,6 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
+from flexspline.pipeline.stiffnesses import FIGURES
+from flexspline.results.quantities import quantity
+
 NBSP = "\N{NO-BREAK SPACE}"
 """Between a number and its unit: no line ends there."""
 Style = Literal["", "bold", "symbol", "note", "code", "break", "ref", "alarm"]
@@ -60,12 +63,13 @@ def ref(target: str) -> Words:
     return (Span("ref", "", target),)
 
 
-_SYMBOLS = re.compile(r"(K_b(,(lobes|contact|free))?|K_e|T_L)(?!\w)")
-"""As `results.quantities` has them; not the beginning of a key, as of K_b_Nm_per_rad."""
+_NAMES = ("T_L", *(quantity(f"{figure}_Nm_per_rad").symbol for figure in FIGURES))
+_SYMBOLS = re.compile(rf"({'|'.join(map(re.escape, sorted(_NAMES, reverse=True)))})(?!\w)")
+"""Longer ones first; not the beginning of a key, as of K_b_Nm_per_rad."""
 
 
 def worded(text: str) -> Words:
-    """The program's own words, in which K_b, K_b,lobes, K_e and T_L are symbols."""
+    """The program's own words, in which T_L and the stiffnesses, as K_b,lobes, are symbols."""
     spans, at = [], 0
     for found in _SYMBOLS.finditer(text):
         spans += [Span("", text[at : found.start()]), Span("symbol", found.group())]

@@ -41,7 +41,7 @@ def answers(content: ReportContent) -> list[PrintedRow]:
         entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         row = _row(entry, stiffness.K_Nm_per_rad, bounds)
-        said = [entry.note, *([more] if (more := notes.get(entry.key)) else [])]
+        said = filter(None, (entry.note, notes.get(entry.key)))
         rows.append(row | {"note": "; ".join(said), "kind": bounds_kind(stiffness.guaranteed)})
     return rows + _stress_rows(content)
 

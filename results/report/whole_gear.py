@@ -8,7 +8,6 @@ from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
-from flexspline.results.file_names import CURVE, LOADS
 from flexspline.results.gear_terms import term_names
 from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.numbers import grouped
@@ -21,10 +20,9 @@ from flexspline.results.report.document import (
     Column,
     Heading,
     Paragraph,
-    Picture,
     Table,
 )
-from flexspline.results.report.picture_blocks import shown
+from flexspline.results.report.picture_blocks import shown_charts
 from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 from flexspline.results.sentences import sentence
 
@@ -70,10 +68,7 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
         ),
         caption=plain("The whole gear. ") + _shares(curve),
     )
-    slopes = "Angle of the output over torque, and the torques between which the slopes are taken."
-    loads = "What tooth pairs and balls carry at rated torque, around one lobe."
-    yield from shown(content, roomy, Picture(CURVE, slopes, 66))
-    yield from shown(content, roomy, Picture(LOADS, loads, 66))
+    yield from shown_charts(content, roomy, "gear")
     yield _beside(content.backlash, curve)
     yield from _assumed(curve)
 

@@ -23,7 +23,7 @@ from flexspline.pipeline.enclosure import NestingError, enclosed
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim_case import RIM_CASES
+from flexspline.pipeline.rim_case import RIM_CASES, held_rim
 
 CUP = load_design(EXAMPLES / "xb1-40.toml")
 FINE = CUP.changed({"solver.tolerance_pct": 0.2})
@@ -90,6 +90,24 @@ def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> No
     assert not any(k.guaranteed for k in K.values())
     assert K["lobes_unsupported"].K_Nm_per_rad < K["lobes_contact"].K_Nm_per_rad
     assert K["lobes_contact"].K_Nm_per_rad < K["lobes"].K_Nm_per_rad
+
+
+@pytest.mark.parametrize("solver", ["auto", "solid"])
+def test_a_case_without_a_solid_model_is_enclosed(
+    solver: str, suite_cache: Path, monkeypatch
+) -> None:
+    """A new load case is a solve on a meridian: parts with holes have their figure too, near or wide."""
+    alone = load_cases.by_itself("lobes", held_rim)
+    monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": alone})
+    near, wide = (
+        rim_stiffness(model(part.changed({"solver.model": solver}), suite_cache), "lobes")
+        for part in (CUP, WIDE)
+    )
+    assert near.model == wide.model == "axisymmetric"
+    assert near.half_width <= 0.005
+    assert not near.shortfall
+    assert wide.half_width > 0.02
+    assert wide.shortfall.words == TOO_FAR
 
 
 def test_a_wide_enclosure_leaves_it_to_the_solid_model(suite_cache: Path) -> None:

@@ -2,14 +2,18 @@
 
 import json
 import re
+import runpy
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from flexspline.geometry.load import design_from
+from flexspline.pipeline import rim_case
+from flexspline.pipeline.rim_case import RIM_CASES, LoadCase
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.study.figures import FIGURES as STUDIED
+from flexspline.results import quantities
 from flexspline.results.numbers import THIN, beyond, grouped
 from flexspline.results.quantities import QUANTITIES, quantity
 
@@ -46,6 +50,20 @@ def test_every_stiffness_has_its_words_in_the_table(figure: str):
     """A load case without them would be solved, and neither printed nor reported."""
     assert quantity(f"{figure}_Nm_per_rad").name
     assert quantity(f"{figure}_bounds_Nm_per_rad").name
+
+
+def test_a_load_case_without_words_of_its_own_is_named_by_its_title(monkeypatch):
+    """`RIM_CASES` is where a load case is added: its figures are printed as soon as it is solved."""
+    more = {**RIM_CASES, "one_lobe": LoadCase("torque at one lobe", None)}
+    monkeypatch.setattr(rim_case, "RIM_CASES", more)
+    made = {q.key: q for q in runpy.run_path(quantities.__file__)["QUANTITIES"]}
+    K, bounds = (made[f"K_b_one_lobe{leaf}_Nm_per_rad"] for leaf in ("", "_bounds"))
+    assert K.name == "Flexspline stiffness, torque at one lobe"
+    assert bounds.name == "Bounds of the flexspline stiffness, torque at one lobe"
+    assert K.symbol == bounds.symbol == "K_b,one lobe"
+    assert K.mathtext == r"$K_{\mathrm{b,one\ lobe}}$"
+    assert list(made).index(K.key) < list(made).index("K_e_Nm_per_rad")
+    assert len(made) == len(QUANTITIES) + 2
 
 
 def test_every_figure_of_a_study_stands_in_the_table():

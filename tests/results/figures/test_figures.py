@@ -5,7 +5,7 @@ import pytest
 from hand_made_gear import BACKLASH, K_B, K_E
 from PIL import Image
 
-from flexspline.results.figures.budget import write_budget
+from flexspline.results.figures.backlash_budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
 from flexspline.results.figures.torque_angle import band, drawn_branch, write_torque_angle
 

@@ -8,7 +8,7 @@ from legibility import drawn_figures, faults
 from unlike_gears import GEARS
 
 from flexspline.fea.types import MeshLevel
-from flexspline.results.figures.budget import write_budget
+from flexspline.results.figures.backlash_budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
 from flexspline.results.figures.torque_angle import drawn_branch, write_torque_angle
 from flexspline.results.style import new_figure

@@ -10,7 +10,8 @@ from hand_made_curve import gear_curve
 from legibility import drawn_figures, faults
 
 from flexspline.pipeline.gear_remarks import LoadedLastPair
-from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
+from flexspline.results.figures.gear_loads import write_gear_loads
+from flexspline.results.figures.gear_torque_angle import write_gear_angle
 
 CURVES = {
     "usual": gear_curve(23.2, 474.0, 108.0),

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Literal
 from flexspline.pipeline.backlash import STD_KEY, TERMS, Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
+from flexspline.results.figures.chart import Chart
 from flexspline.results.figures.words import angle_title, fit, wrapped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from flexspline.results.report.content import ReportContent
 
 ADDED = "#b9a3cf"
 SUM = "#dfe3e7"
@@ -184,3 +187,20 @@ def _sources(axes: Axes, backlash: Backlash) -> None:
     axes.spines["bottom"].set_visible(False)
     for text in said:
         fit([text], 0.9 * axes.bbox.width)
+
+
+def _caption(content: ReportContent) -> str:
+    said = "The terms as they add up"
+    if content.backlash.std_arcsec is not None:
+        said += ", the total with one standard deviation, and its sources"
+    if content.extended is not None:
+        return f"{said}. Below the simulated sum: what the model in {content.extended.model} adds."
+    return f"{said}."
+
+
+CHART = Chart(
+    write=write_budget,
+    arguments=lambda run, extended: (run.backlash, extended),
+    caption=_caption,
+    width_pct=62,
+)
