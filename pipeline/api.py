@@ -47,6 +47,7 @@ def stiffness(
     ------
     DesignError : no such part or case, or the design asks for a model that the part does not allow.
     ComputationError : no mesh or no solution; lift-off without bolt holes asked of the solid model.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------
@@ -89,6 +90,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     ------
     DesignError : no such case.
     ComputationError : no mesh or no solution.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------
@@ -123,6 +125,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     StiffnessValueError : a stiffness that is not positive and finite.
     BearingPlayDomainError : bearing play beyond the largest that the involute model allows.
     ComputationError : a stiffness that is needed was not found.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------
@@ -159,6 +162,7 @@ def gear(design: Design) -> GearCurve:
     ------
     DesignError
     ComputationError : no mesh or no solution, or no equilibrium at a torque.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------
@@ -205,6 +209,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     ------
     DesignError : the study file or its design is wrong.
     ComputationError : its storage or its cluster went away. Designs that fail are rows.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------

@@ -8,7 +8,6 @@ from typing import TypeVar
 from flexspline.fea.shortfall import missing_because
 from flexspline.fea.types import Shortfall
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.enclosure import NestingError
 
 T = TypeVar("T")
 
@@ -22,12 +21,10 @@ class Attempts:
     def get(self, name: str, make: Callable[[], T]) -> T | None:
         """The figure, or None where its computation failed; bugs and wrong designs pass through.
 
-        So does a NestingError: one of two models is wrong, and no figure of either is to be trusted.
+        So does a NestingError (`pipeline.errors`): no figure is to be trusted then.
         """
         try:
             return make()
-        except NestingError:
-            raise
         except (ComputationError, MemoryError) as fault:
             self.missing[name] = missing_because(fault)
         return None

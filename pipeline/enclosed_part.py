@@ -8,7 +8,7 @@ from math import inf
 
 from flexspline.fea.types import MET, Shortfall, Stiffness
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.enclosure import NestingError, enclosed
+from flexspline.pipeline.enclosure import enclosed
 from flexspline.pipeline.parts import PartModel
 
 BODY_SHARE = 0.3
@@ -80,8 +80,6 @@ def enclosure_if_any(
         return None
     try:
         return enclosure_of(model, solve, expected)
-    except NestingError:
-        raise
     except (ComputationError, MemoryError) as fault:
         model.context.progress.note(f"  no bounds from two bodies of revolution: {fault}")
         return None

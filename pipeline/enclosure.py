@@ -6,8 +6,7 @@ bodies; docs/theory.md proves it).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from copy import copy
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from flexspline.fea.errors import NoBetterMeshError
@@ -16,6 +15,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
 from flexspline.geometry.percent import percent
+from flexspline.pipeline.errors import NestingError
 
 PARABOLA_SLACK = 1e-4
 """Of K: what parabolas for arcs may do to a solid model, ten times what was measured (`fea.solid.swept`)."""
@@ -37,30 +37,6 @@ OF_HOLES = Names(
     "axisymmetric",
     "two bodies of revolution",
 )
-
-
-class NestingError(ComputationError):
-    """Less material came out stiffer than more: one of the models is wrong.
-
-    Attributes
-    ----------
-    softer_Nm_per_rad : least K of the body that has less material.
-    stiffer_Nm_per_rad : largest K of the one that has more.
-    """
-
-    def __init__(self, less: str, softer: float, more: str, stiffer: float) -> None:
-        self.softer_Nm_per_rad, self.stiffer_Nm_per_rad = softer, stiffer
-        super().__init__(
-            f"{less} is at least {softer:.7g} N·m/rad stiff, {more}, which has more material, at most "
-            f"{stiffer:.7g}: one of the two solutions is wrong; please report the design file"
-        )
-
-    def at(self, values: Mapping[str, float]) -> NestingError:
-        """The same of a design of a study: with its values by dotted key, before the reason."""
-        where = ", ".join(f"{key} = {value:g}" for key, value in values.items())
-        found = copy(self)
-        found.args = (f"design with {where}: {self}",) if where else self.args
-        return found
 
 
 def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
@@ -169,8 +145,6 @@ def answered_within(
     """
     try:
         solid = solve()
-    except NestingError:  # an error of the program
-        raise
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
         failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "

@@ -42,6 +42,7 @@ def diagnose(
     StiffnessValueError : a stiffness given is no positive, finite number.
     MeasurementError : the file cannot be accepted.
     ComputationError : a stiffness that is needed was not found.
+    NestingError : two models contradict each other; no figure is to be trusted.
 
     Examples
     --------

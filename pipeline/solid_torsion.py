@@ -18,7 +18,7 @@ from flexspline.fea.scaled_estimate import ERROR_RATIOS
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
@@ -187,16 +187,13 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         return inf if isinstance(mesh, LayeredMesh) else max(UNLAYERED_LAST, mesh.elements)
 
     found = solid_stiffness(
-        mesher,
-        first,
+        MeshSequence(mesher, first, by_error, most),
         model.material,
         model.part.driven,
         tolerance,
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
         Deadline(seconds),
-        by_error,
-        most,
     )
     meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]

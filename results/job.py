@@ -50,6 +50,7 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
     """
     from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError, why_of
     from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
+    from flexspline.pipeline.errors import NestingError
     from flexspline.results.folder_lock import held_until_the_end
 
     where = f"{path}: " if path else ""
@@ -66,7 +67,7 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
     except KeyboardInterrupt:
         tell(f"flexspline: interrupted{interrupted}")
         raise typer.Exit(INTERRUPTED) from None
-    except ComputationError as error:
+    except (ComputationError, NestingError) as error:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(FAILED) from None
     except OSError as error:

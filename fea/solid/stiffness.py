@@ -56,6 +56,23 @@ mesh is a cautious one. With 0.7 and 0.95 as many of 49 random shafts met the to
 
 
 @dataclass(frozen=True)
+class MeshSequence:
+    """Which meshes of a part's sector there are, coarse to fine.
+
+    Attributes
+    ----------
+    make, first : a mesh by its specification, and that of the first.
+    by_error : the next mesh, by the errors of the last one's elements.
+    most_elements : by the first mesh, the number beyond which a mesh is the last one.
+    """
+
+    make: Mesher
+    first: MeshSpec
+    by_error: FinerByError = lambda mesh, error, over: None
+    most_elements: Callable[[TetMesh], float] = lambda first: inf
+
+
+@dataclass(frozen=True)
 class SolidStiffness:
     """The stiffness, the finest mesh's solution for 1 rad, and all meshes, coarse to fine."""
 
@@ -65,31 +82,28 @@ class SolidStiffness:
 
 
 def solid_stiffness(
-    mesher: Mesher,
-    first: MeshSpec,
+    meshes: MeshSequence,
     material: Elastic,
     driven: str,
     tolerance: float,
     symmetry: str,
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
-    by_error: FinerByError = lambda mesh, error, over: None,
-    most_elements: Callable[[TetMesh], float] = lambda first: inf,
 ) -> SolidStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
-    the last has more than `most_elements` of the first, or MAX_LEVELS are solved.
+    the last has more elements than `meshes` allows, or MAX_LEVELS are solved.
 
     Raises
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(mesher, by_error, first, material, driven, tolerance, progress, deadline)
-    mesh = found.mesh(first)
+    found = _SolidTorsion(meshes, material, driven, tolerance, progress, deadline)
+    mesh = found.mesh(meshes.first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
-    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements(mesh))
+    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {percent(found.half)} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)
@@ -100,11 +114,11 @@ class _SolidTorsion:
     """The meshes so far, the finest one's solution for 1 rad, and how far off its K is."""
 
     def __init__(
-        self, mesher: Mesher, by_error: FinerByError, first: MeshSpec, material: Elastic, driven: str,
-        tolerance: float, progress: Callable[[str], None], deadline: Deadline,
+        self, meshes: MeshSequence, material: Elastic, driven: str, tolerance: float,
+        progress: Callable[[str], None], deadline: Deadline,
     ) -> None:  # fmt: skip
-        self._by_error = by_error
-        self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
+        self._sequence, self._spec = meshes, meshes.first
+        self._material, self._driven = material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
         self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
@@ -112,7 +126,7 @@ class _SolidTorsion:
 
     def mesh(self, spec: MeshSpec) -> TetMesh:
         began_s = self._deadline.elapsed()
-        mesh = self._mesher(spec)
+        mesh = self._sequence.make(spec)
         self._last_s = self._deadline.elapsed() - began_s
         return mesh
 
@@ -140,7 +154,7 @@ class _SolidTorsion:
     def finer(self, mesh: TetMesh) -> TetMesh | None:
         if len(self.meshes) == MAX_LEVELS:
             return None
-        made = self._by_error(mesh, self._errors, self.half / self._tolerance)
+        made = self._sequence.by_error(mesh, self._errors, self.half / self._tolerance)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
             self.estimate.believed, self.estimate.falls = ERROR_SCALES_BY_ERROR, ERROR_RATIOS
             return made

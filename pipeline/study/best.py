@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexspline.fea.types import SolidField
-from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.ellipse_peak import ellipse_field
+from flexspline.pipeline.study.design_faults import DESIGN_FAULTS
 from flexspline.pipeline.study.result import StudyResult
 
 
@@ -31,7 +31,7 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     context = analysis_context(design.model_copy(update={"solver": solver}))
     try:
         field = ellipse_field(context.part("flexspline"))
-    except FlexsplineError as fault:
+    except DESIGN_FAULTS as fault:
         say(f"no picture of design {row.slot} on the wave generator: {fault}")
         return None
     return BestField(row.slot, field, design.w0_mm)

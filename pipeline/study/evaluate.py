@@ -15,18 +15,19 @@ from typing import Any
 from flexspline.fea.shortfall import settled_peak
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import DesignError, FlexsplineError
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.pipeline.backlash import backlash, series_stiffness
-from flexspline.pipeline.enclosure import NestingError
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
 from flexspline.pipeline.rim_case import RIM_CASES, figure_of
+from flexspline.pipeline.study.design_faults import DESIGN_FAULTS
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve, stiffness_figures
 from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
 
@@ -83,7 +84,7 @@ def evaluate(task: Task) -> Outcome:
         found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
     except NestingError as fault:
         raise fault.at(task.values) from None
-    except FlexsplineError as fault:
+    except DESIGN_FAULTS as fault:
         found = Outcome(faults=(str(fault),))
     return replace(found, seconds=time.perf_counter() - began)
 
@@ -121,9 +122,7 @@ def figures_of(
     for name, solve in asked.items():
         try:
             found |= _figures(name, solve())
-        except NestingError:  # an error of the program
-            raise
-        except FlexsplineError as fault:
+        except DESIGN_FAULTS as fault:
             missing[name] = str(fault)
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
@@ -131,14 +130,12 @@ def figures_of(
         if "gear" in solves and "K_e" not in missing:
             try:
                 found |= _gear(design, found["K_e_Nm_per_rad"])
-            except NestingError:
-                raise
-            except FlexsplineError as fault:
+            except DESIGN_FAULTS as fault:
                 missing["gear"] = str(fault)
         if not {in_sum, "K_e"} & set(missing):
             try:
                 found |= _sum(design, found)
-            except FlexsplineError as fault:
+            except DESIGN_FAULTS as fault:
                 missing["backlash_arcsec"] = str(fault)
     mass = masses(design)
     sizes = (

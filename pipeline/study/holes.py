@@ -21,7 +21,6 @@ from flexspline.geometry.keys import HOLES
 from flexspline.geometry.shaft_shape import ShaftSegment
 from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.enclosure import NestingError
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.study.figures import stiffness_keys
 
@@ -131,8 +130,6 @@ def holes_of(
     try:
         fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
-    except NestingError:  # an error of the program
-        raise
     except (ComputationError, MemoryError) as fault:
         why = missing_because(fault)
         say(f"K_e stays that of the shaft without holes: {why}")

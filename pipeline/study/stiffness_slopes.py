@@ -16,12 +16,13 @@ from flexspline.fea.axisymmetric.twist import Twist, twist
 from flexspline.fea.shortfall import missing_because, settled
 from flexspline.fea.types import MET, Elastic, Shortfall
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import DesignError, FlexsplineError
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import lengths, with_values
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.revolved import lobes, revolved, torsion
+from flexspline.pipeline.study.design_faults import DESIGN_FAULTS
 from flexspline.pipeline.study.slope import Slope, Slopes
 
 HELD_STEP = 1e-4
@@ -79,7 +80,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             held, why = None, MET
             try:
                 held = slope_with_field_held(moved, key, p)
-            except FlexsplineError as fault:
+            except DESIGN_FAULTS as fault:
                 why = missing_because(fault)
             again, error, no_room = _richardson(K, key, p, here)
             if held is None and again is None:
@@ -91,7 +92,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
                 try:
                     of_sum = K_lobes({})
                     best, _, no_sum = _richardson(K_lobes, key, p, of_sum)
-                except FlexsplineError as fault:
+                except DESIGN_FAULTS as fault:
                     best, no_sum = None, missing_because(fault)
             windup = None
             if best is not None:
@@ -137,7 +138,7 @@ def _richardson(
     for _ in range(TRIES):
         try:
             wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
-        except FlexsplineError as fault:
+        except DESIGN_FAULTS as fault:
             share, why = share * NARROWER, missing_because(fault)
             continue
         noise = 5 / 3 * K_WIDTH * here / (share * p)  # K's doubt on each, times the weights

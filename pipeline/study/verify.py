@@ -8,16 +8,15 @@ from dataclasses import asdict, dataclass
 
 from flexspline.fea.shortfall import missing_because
 from flexspline.geometry.design import Design, Solver
-from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
-from flexspline.pipeline.enclosure import NestingError
 from flexspline.pipeline.load_cases import SOLID_CASES
 from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.stiffnesses import NotFoundError, Stiffnesses
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
+from flexspline.pipeline.study.design_faults import DESIGN_FAULTS
 from flexspline.pipeline.study.evaluate import Outcome, Task, outcome_of
 from flexspline.pipeline.study.figures import GIVEN_BY, stiffness_figures, stiffness_keys
 from flexspline.pipeline.study.local_workers import WORKER_DIED
@@ -60,9 +59,7 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
         return SolidAnswer(Outcome(_figures(design, found)), found.passing)
     except NotFoundError as fault:
         return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
-    except NestingError:  # an error of the program
-        raise
-    except (FlexsplineError, MemoryError) as fault:
+    except (*DESIGN_FAULTS, MemoryError) as fault:
         why = missing_because(fault)
         return SolidAnswer(Outcome(faults=(why.words,)), why.of_the_machine)
 

@@ -10,6 +10,7 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.fast_model import (
     field,
     first_field,
@@ -47,7 +48,7 @@ def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
         return _QUESTIONS[question](design_from(tables))
     except DesignError as fault:
         return Fault(fault.key, str(fault))
-    except ComputationError as fault:
+    except (ComputationError, NestingError) as fault:
         return Fault("", str(fault))
 
 

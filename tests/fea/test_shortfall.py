@@ -15,7 +15,7 @@ from flexspline.fea.shortfall import ToleranceError, missing_because, next_mesh_
 from flexspline.fea.solid import stiffness as solid
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
@@ -127,8 +127,7 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
         return mesher(spec)
 
     found = solid_stiffness(
-        limited,
-        first_spec(design.part("flexspline")),
+        MeshSequence(limited, first_spec(design.part("flexspline"))),
         STEEL,
         "mesh",
         1e-5,

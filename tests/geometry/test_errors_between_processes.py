@@ -7,7 +7,7 @@ import pickle
 import pytest
 
 from flexspline.geometry.errors import DesignError, FlexsplineError
-from flexspline.pipeline.enclosure import NestingError
+from flexspline.pipeline.errors import NestingError
 
 
 @pytest.mark.parametrize(

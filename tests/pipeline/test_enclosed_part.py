@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
+from wrong_models import stiffen_solid_model
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.errors import NoBetterMeshError
@@ -19,7 +20,8 @@ from flexspline.pipeline import load_cases, part_stiffness, solid_lobes, solid_t
 from flexspline.pipeline.analysis import stiffnesses, torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
-from flexspline.pipeline.enclosure import NestingError, enclosed
+from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -161,14 +163,8 @@ def test_where_the_enclosure_fails_the_solid_model_stays(tmp_path: Path, monkeyp
 
 @pytest.mark.parametrize("solver", ["auto", "solid"])
 def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypatch) -> None:
-    """A wall a tenth too thick, say: K is 5 % off where ± 0.3 % is claimed, and nothing is answered."""
-    solve = solid_torsion.solid_stiffness
-
-    def off(*given: object) -> object:
-        found = solve(*given)
-        return replace(found, stiffness=found.stiffness.times(1.05))
-
-    monkeypatch.setattr(solid_torsion, "solid_stiffness", off)
+    """K is 5 % off where ± 0.3 % is claimed, and nothing is answered."""
+    stiffen_solid_model(monkeypatch)
     with pytest.raises(NestingError, match="the solid model"):
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
 

@@ -14,7 +14,8 @@ from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.geometry.load import load_design
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
-from flexspline.pipeline.enclosure import OF_HOLES, NestingError, between, enclosed
+from flexspline.pipeline.enclosure import OF_HOLES, between, enclosed
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.revolved import contact, lobes, torsion
 
 FINE = 2e-4

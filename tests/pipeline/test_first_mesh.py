@@ -3,7 +3,6 @@ becomes of a sweep that fails a check."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -17,6 +16,7 @@ from flexspline.fea.errors import MesherTimeError, TooManyElementsError
 from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.stiffness import MeshSequence
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.design import Design
@@ -40,8 +40,8 @@ class MeshedError(Exception):
 def first_elements(design: Design, folder: Path) -> int:
     """Of the first mesh of its shaft, which is not solved."""
 
-    def only_meshed(mesher: Callable[[MeshSpec], TetMesh], spec: MeshSpec, *_: object) -> None:
-        raise MeshedError(mesher(spec).elements)
+    def only_meshed(meshes: MeshSequence, *_: object) -> None:
+        raise MeshedError(meshes.make(meshes.first).elements)
 
     context = AnalysisContext(design, Cache(folder), Progress())
     with pytest.MonkeyPatch.context() as patch:

@@ -6,7 +6,8 @@ import pytest
 
 from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.pipeline.attempts import Attempts
-from flexspline.pipeline.enclosure import NestingError, held_within
+from flexspline.pipeline.enclosure import held_within
+from flexspline.pipeline.errors import NestingError
 
 TOLERANCE = 0.005
 NO_TIME = "the next mesh would end too late"

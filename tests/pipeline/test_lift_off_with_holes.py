@@ -15,7 +15,8 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import TOO_FAR
-from flexspline.pipeline.enclosure import NestingError, enclosed
+from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.lift_off_with_holes import RATIO_SPREAD, by_ratio
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel

@@ -30,7 +30,7 @@ from flexspline.fea.solid.plan_curves import Arc, Line
 from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.space import SolidSpace
-from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
@@ -354,9 +354,8 @@ def test_a_narrow_neck_is_found_by_its_error() -> None:
         return layered_mesh(part, degrees, spec)
 
     wanted = 0.01
-    found = solid_stiffness(
-        mesher, first, material, "grip", wanted, "", print, by_error=by_error
-    ).stiffness
+    meshes = MeshSequence(mesher, first, by_error)
+    found = solid_stiffness(meshes, material, "grip", wanted, "", print).stiffness
     assert not found.shortfall
     assert found.half_width <= wanted
     assert len(found.levels) > 1
@@ -385,9 +384,9 @@ def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
         return mesh
 
     deadline = Deadline(74.0, lambda: clock[0], lambda: worked[0])
+    meshes = MeshSequence(mesher, first_spec(part).scaled(4.0), by_error)
     found = solid_stiffness(
-        mesher, first_spec(part).scaled(4.0), Elastic.of(part.material), "grip", 1e-9, "", print,
-        deadline, by_error,
-    ).stiffness  # fmt: skip
+        meshes, Elastic.of(part.material), "grip", 1e-9, "", print, deadline
+    ).stiffness
     assert len(found.levels) == 2  # the third would begin at 75 s
     assert "74 s" in found.shortfall.words

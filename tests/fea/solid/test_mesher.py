@@ -21,7 +21,7 @@ from flexspline.fea.solid.quadratic import JACOBIAN_RATIO
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import into_sector_planes
 from flexspline.fea.solid.space import SolidSpace
-from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.design import Design
@@ -229,9 +229,8 @@ def test_few_holes_in_the_boss_hardly_matter(holes: int) -> None:
     steel = Elastic.of(given.material.flexspline)
     spec = first_spec(given.part("flexspline"))
     sector = sector_of(given.part("flexspline"), "torsion")
-    found = solid_stiffness(
-        lambda s: mesh_surface(surface, s), spec, steel, "mesh", 0.02, sector.label, print
-    ).stiffness
+    meshes = MeshSequence(lambda s: mesh_surface(surface, s), spec)
+    found = solid_stiffness(meshes, steel, "mesh", 0.02, sector.label, print).stiffness
     bare = torsional_stiffness(design(0).part("flexspline").meridian, steel, "mesh", 1e-3)
     assert found.lower_Nm_per_rad < bare.upper_Nm_per_rad
     assert found.K_Nm_per_rad == pytest.approx(bare.K_Nm_per_rad, rel=0.005)

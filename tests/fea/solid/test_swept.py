@@ -25,7 +25,7 @@ from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.space import SolidSpace
-from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
@@ -332,8 +332,8 @@ def test_estimated_bounds_hold_the_guaranteed_stiffness(name: str) -> None:
         assert mesh is not None
         return mesh
 
-    first = first_spec(design.part(part))
-    found = solid_stiffness(mesher, first, material, DRIVEN[part], 0.005, "", print).stiffness
+    meshes = MeshSequence(mesher, first_spec(design.part(part)))
+    found = solid_stiffness(meshes, material, DRIVEN[part], 0.005, "", print).stiffness
     exact = guaranteed(name)
     assert found.lower_Nm_per_rad < exact.K_Nm_per_rad < found.upper_Nm_per_rad
     error = found.upper_Nm_per_rad - exact.K_Nm_per_rad

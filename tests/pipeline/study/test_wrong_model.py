@@ -7,31 +7,32 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 from study_bench import TWO_WALLS, WALL, study_of, threads
+from wrong_models import swap_bodies
 
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import enclosure
-from flexspline.pipeline.enclosure import Names, NestingError
-from flexspline.pipeline.study import holes
+from flexspline.pipeline.enclosure import check_against
+from flexspline.pipeline.errors import NestingError
+from flexspline.pipeline.study import holes, verify
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import Solve
 from flexspline.pipeline.study.holes import holes_of
+from flexspline.pipeline.study.local_workers import LocalWorkers
 from flexspline.pipeline.study.run import run_study, trial_store_of
+from flexspline.pipeline.study.verify import solid_answer
 
 
 @pytest.fixture
-def wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut and whole body change places."""
-    between = enclosure.between
+def swapped(monkeypatch: pytest.MonkeyPatch) -> None:
+    swap_bodies(monkeypatch)
 
-    def turned(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
-        return between(whole.times(1.1), cut, names)
 
-    monkeypatch.setattr(enclosure, "between", turned)
+def fails(*given: object, **named: object) -> None:
+    raise NestingError("the shaft", 2.0, "the shaft without holes", 1.0)
 
 
 @pytest.mark.parametrize("solve", ["torsion", "lobes"])
-@pytest.mark.usefixtures("wrong")
+@pytest.mark.usefixtures("swapped")
 def test_it_is_no_missing_figure(solve: Solve) -> None:
     """Neither of K_b, whose bounds are theorems, nor of a case of the rim."""
     task = Task(load_design(EXAMPLES / "xb1-40.toml").tables, {WALL: 0.42}, (solve,))
@@ -39,7 +40,7 @@ def test_it_is_no_missing_figure(solve: Solve) -> None:
         evaluate(task)
 
 
-@pytest.mark.usefixtures("wrong")
+@pytest.mark.usefixtures("swapped")
 def test_the_study_stops_and_keeps_no_row_of_it(tmp_path: Path) -> None:
     study = study_of(TWO_WALLS)
 
@@ -55,9 +56,22 @@ def test_the_study_stops_and_keeps_no_row_of_it(tmp_path: Path) -> None:
 def test_so_does_the_solve_that_tells_what_the_shafts_holes_do(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def fails(*given: object) -> Stiffness:
-        raise NestingError("the shaft", 2.0, "the shaft without holes", 1.0)
-
     monkeypatch.setattr(holes, "part_stiffness", fails)
     with pytest.raises(NestingError):
         holes_of(load_design(EXAMPLES / "xb1-40.toml"), fast_K_e, lambda line: None)
+
+
+def test_so_does_the_verification_of_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verify, "stiffnesses", fails)
+    task = Task(load_design(EXAMPLES / "xb1-40.toml").tables, {}, ("torsion",))
+    with pytest.raises(NestingError):
+        solid_answer(task, rim=False)
+
+
+def test_it_comes_back_from_a_worker_as_what_it_is() -> None:
+    """From a process of its own, as from a cluster: with its numbers, and no worker is taken for dead."""
+    solid = Stiffness(1100.0, 1090.0, 1110.0, False, "solid", "", "", ())
+    enclosure = Stiffness(1000.0, 998.0, 1002.0, True, "axisymmetric", "", "", ())
+    with LocalWorkers(1) as workers, pytest.raises(NestingError) as caught:
+        workers.submit(check_against, solid, enclosure).result()
+    assert (caught.value.softer_Nm_per_rad, caught.value.stiffer_Nm_per_rad) == (1090.0, 1002.0)

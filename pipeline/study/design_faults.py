@@ -1,0 +1,17 @@
+"""Errors that say what is wrong with one design of a study, and leave the other designs as they are."""
+
+from __future__ import annotations
+
+from flexspline.fea.axisymmetric.patches import PatchError
+from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.pipeline.backlash import StiffnessValueError
+from flexspline.pipeline.bearing_play import BearingPlayDomainError
+
+DESIGN_FAULTS = (
+    DesignError,
+    ComputationError,
+    PatchError,
+    StiffnessValueError,
+    BearingPlayDomainError,
+)
+"""They cost that design a figure, or all. A NestingError is none: it ends the study."""
