@@ -25,7 +25,7 @@ EXTENDED = next(gear.extended for gear in GEARS.values() if gear.extended is not
 
 
 def run(**changes) -> RunResult:
-    """A run whose stiffnesses were solved on several meshes."""
+    """A run without fields whose stiffnesses were solved on several meshes."""
     found = Stiffnesses({"K_b": K_B, "K_e": K_E})
     limit = linear_limit(design(), 16687.0)
     return replace(RunResult(design(), (), found, {}, BACKLASH, limit, {}, CURVE), **changes)
@@ -48,10 +48,11 @@ def test_every_chart_has_a_sentence_below_it(name: str) -> None:
 
 
 def test_a_run_without_a_gear_or_a_second_mesh_has_the_other_charts() -> None:
-    assert list(keys(run())) == list(CHARTS)
+    every = keys(run())
+    assert list(every) == [name for name in CHARTS if name in every]
     one_mesh = {name: replace(K, levels=K.levels[-1:]) for name, K in (("K_b", K_B), ("K_e", K_E))}
     left = keys(run(gear=None, stiffnesses=Stiffnesses(one_mesh)))
-    assert set(CHARTS) - set(left) == {"gear_torque_angle", "gear_loads", "convergence"}
+    assert set(every) - set(left) == {"gear_torque_angle", "gear_loads", "convergence"}
 
 
 @pytest.mark.parametrize(
@@ -67,9 +68,9 @@ def test_a_run_without_a_gear_or_a_second_mesh_has_the_other_charts() -> None:
 )  # fmt: skip
 def test_a_chart_is_drawn_again_where_what_it_shows_changed(changes, drawn_again) -> None:
     before, after = keys(run()), keys(run(**changes))
-    assert {name for name in CHARTS if before[name] != after[name]} == drawn_again
+    assert {name for name in before if before[name] != after[name]} == drawn_again
 
 
 def test_only_the_budget_shows_an_extended_model() -> None:
     before, after = keys(run()), keys(run(), EXTENDED)
-    assert {name for name in CHARTS if before[name] != after[name]} == {"backlash_budget"}
+    assert {name for name in before if before[name] != after[name]} == {"backlash_budget"}
