@@ -39,10 +39,13 @@ LAYERED_TIMES, LAYERED_LEAST = 2.0, 1.5
 """Elements of the next mesh of a shaft in layers over those of the last, and at least."""
 LAYERED_ELEMENTS, LAYERED_LAST = 36_000, 12_000
 """Of such a mesh at most: its solution takes 3 to 5 s of the processor; and the number beyond which a third
-mesh is made only where it is expected to meet the tolerance. A first mesh is followed by a second whatever
-its size: one alone cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186 s of the
+mesh is made only where it is expected to meet the tolerance. A first mesh is followed by a second: one alone
+cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186 s of the
 processor; in 275 s with FIRST_ELEMENTS of 20 000 and a third mesh of any, also 29. One known to ± 4.9 % by
 15 000 elements, where 0.1 % was asked, was known to ± 3.6 % by 48 000, 23 s later."""
+LAYERED_ALONE = 2 * LAYERED_ELEMENTS
+"""The number beyond which none follows the first: after one of 106 804 the second took 13 s to make, and could
+not be solved in the time that was left."""
 ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[0])
 """Elements that bounds 1/x as wide take, over those there are: x to this power."""
 UNLAYERED_LAST = 40_000
@@ -172,7 +175,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         if not isinstance(mesh, LayeredMesh):
             return None
         wanted = mesh.elements * over**ELEMENTS_EXPONENT
-        if mesh is not made[0].mesh and mesh.elements > LAYERED_LAST and wanted > LAYERED_ELEMENTS:
+        last = LAYERED_ALONE if mesh is made[0].mesh else LAYERED_LAST
+        if mesh.elements > last and wanted > LAYERED_ELEMENTS:
             raise TooManyElementsError(wanted, LAYERED_ELEMENTS)
         most = max(LAYERED_LEAST * mesh.elements, LAYERED_ELEMENTS)
         with model.context.progress.stage(f"mesh of the {model.name}"):

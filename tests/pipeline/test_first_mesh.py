@@ -178,6 +178,21 @@ def test_a_first_mesh_in_layers_is_made_coarser_too(
         assert coarser.mesh.elements < usual.mesh.elements
 
 
+@pytest.mark.parametrize(("most", "alone"), [(10**6, False), (100, True)])
+def test_a_first_mesh_in_layers_that_is_very_large_is_the_only_one(
+    most: int, alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second one would take longer to make than is left to solve it."""
+    monkeypatch.setattr(solid_torsion, "LAYERED_ELEMENTS", 100)
+    monkeypatch.setattr(solid_torsion, "LAYERED_ALONE", most)
+    design = DESIGN.changed({"solver.tolerance_pct": 0.1})
+    part = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
+    found = solid_torsion.twisted(part, part.tolerance, kinds=("layered",)).stiffness
+    assert (len(found.levels) == 1) is alone
+    assert ("elements or more" in str(found.shortfall)) is alone
+    assert found.half_width > part.tolerance
+
+
 def test_fTetWild_has_little_time_where_an_enclosure_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
