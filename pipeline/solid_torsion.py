@@ -44,8 +44,8 @@ cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186
 processor; in 275 s with FIRST_ELEMENTS of 20 000 and a third mesh of any, also 29. One known to ± 4.9 % by
 15 000 elements, where 0.1 % was asked, was known to ± 3.6 % by 48 000, 23 s later."""
 LAYERED_ALONE = 2 * LAYERED_ELEMENTS
-"""The number beyond which none follows the first: after one of 106 804 the second took 13 s to make, and could
-not be solved in the time that was left."""
+"""The number beyond which none follows the first: after one of 106 804 the second took 13 s to make, and it
+could not be solved in the time that was left."""
 ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[0])
 """Elements that bounds 1/x as wide take, over those there are: x to this power."""
 UNLAYERED_LAST = 40_000
