@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lobes import LOBE_BULK
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.refinement import refine
 from flexspline.fea.shortfall import ToleranceError
 from flexspline.fea.types import NMM_PER_NM, Elastic
