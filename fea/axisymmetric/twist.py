@@ -42,7 +42,7 @@ def twist(outline: Meridian, material: Elastic, driven: str, relative_error: flo
     ------
     MeshingError, HarmonicError, ToleranceError
     """
-    found = _Twisted(material, driven, relative_error)
+    found = _TwistRefinement(material, driven, relative_error)
     if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
         raise ToleranceError(f"the energy is off by {found.error:.2g}", why)
     r = found.model.space.places[:, 0]
@@ -51,7 +51,7 @@ def twist(outline: Meridian, material: Elastic, driven: str, relative_error: flo
     return Twist(found.model.mesh, material, rotation, found.solved.twice_energy / NMM_PER_NM)
 
 
-class _Twisted:
+class _TwistRefinement:
     """The finest mesh's solution, and its estimated relative error of the energy."""
 
     def __init__(self, material: Elastic, driven: str, relative_error: float) -> None:

@@ -22,7 +22,7 @@ from flexspline.results.studio.guard import Guard, add_headers
 from flexspline.results.studio.jobs import SERVED
 from flexspline.results.studio.page_style import page_style
 from flexspline.results.studio.session import Session
-from flexspline.results.studio.tab import Workers
+from flexspline.results.studio.tab import StudioWorkers
 
 LARGEST_MESSAGE = 2 * LARGEST_TOML_BYTES
 """A design as JSON is at most a little larger than as TOML."""
@@ -37,7 +37,7 @@ class Studio:
 
     guard: Guard
     design: Design
-    workers: Workers = field(default_factory=Workers.of_this_machine)
+    workers: StudioWorkers = field(default_factory=StudioWorkers.of_this_machine)
     sessions: dict[str, Session] = field(default_factory=dict)
     page: dict[str, tuple[bytes, str]] = field(default_factory=lambda: _page())
 
