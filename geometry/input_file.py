@@ -18,6 +18,8 @@ KINDS = (
     (stat.S_ISBLK, "is a device"),
 )
 """What is not read: a pipe may wait for ever, a device such as /dev/zero never ends."""
+LARGEST_TOML_BYTES = 1_000_000
+"""Of a design, a study or an extended model, which take 2 to 5 kB: a file beyond this is some other file."""
 
 
 class InputFileError(FlexsplineError, ValueError):

@@ -13,13 +13,10 @@ from pydantic import ValidationError
 from flexspline.geometry.checks import check
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING, DesignError, DesignFileError
-from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.geometry.input_file import LARGEST_TOML_BYTES, InputFileError, read_input
 from flexspline.geometry.plain_words import kind_of, without_tag
 from flexspline.geometry.schema import ends_of
 from flexspline.geometry.toml_read import EmptyTomlError, TomlError, toml_tables
-
-LARGEST_BYTES = 1_000_000
-"""A design takes 2 kB; a file beyond this is some other file."""
 
 
 def load_design(path: Path | str) -> Design:
@@ -59,7 +56,7 @@ def read_raw(path: Path | str, what: str = "design") -> bytes:
     DesignFileError : no such file, not a regular file, too large.
     """
     try:
-        return read_input(path, LARGEST_BYTES, f"a {what} file")
+        return read_input(path, LARGEST_TOML_BYTES, f"a {what} file")
     except InputFileError as fault:
         raise DesignFileError(path, str(fault)) from None
 
@@ -71,9 +68,9 @@ def tables_from(raw: bytes, name: object, what: str = "design") -> dict[str, Any
     ------
     DesignFileError : too large, empty, not UTF-8, not TOML.
     """
-    if len(raw) > LARGEST_BYTES:
+    if len(raw) > LARGEST_TOML_BYTES:
         raise DesignFileError(
-            name, f"{len(raw)} bytes; a {what} file has at most {LARGEST_BYTES} bytes"
+            name, f"{len(raw)} bytes; a {what} file has at most {LARGEST_TOML_BYTES} bytes"
         )
     try:
         return toml_tables(raw)

@@ -19,29 +19,29 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
 
-from flexspline.fea.turns import Turn, shared_folder
+from flexspline.fea.process_lock import ProcessLock, shared_folder
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
 
 T = TypeVar("T")
 PLACE_DIGITS = 12
-"""Hexadecimal ones of a key that tell its turn's place in a file: two of a thousand keys share one once in
+"""Hexadecimal ones of a key that tell its lock's place in a file: two of a thousand keys share one once in
 5e8 times, and wait for each other."""
 FORMAT = 26
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
-class Turns:
+class KeyedLocks:
     """One for each key. A value asks only for values of earlier stages, so none waits in a circle."""
 
     def __init__(self) -> None:
         self._own = Lock()
-        self._turns: dict[str, Turn] = {}
+        self._locks: dict[str, ProcessLock] = {}
 
-    def __getitem__(self, key: str) -> Turn:
+    def __getitem__(self, key: str) -> ProcessLock:
         with self._own:
-            return self._turns.setdefault(key, Turn(1 + int(key[:PLACE_DIGITS], 16)))
+            return self._locks.setdefault(key, ProcessLock(1 + int(key[:PLACE_DIGITS], 16)))
 
 
 def _shared(key: str) -> Path | None:
@@ -85,8 +85,8 @@ class Cache:
     """What failed since this object was made, by key: nobody waits for the same failure twice."""
     passing: dict[str, Any] = field(default_factory=dict, compare=False)
     """What is not for the disk, or found no room there, by key."""
-    turns: Turns = field(default_factory=Turns, compare=False)
-    """Whose turn it is to make a value, by key."""
+    locks: KeyedLocks = field(default_factory=KeyedLocks, compare=False)
+    """Held while a value is made, by key."""
     told: set[str] = field(default_factory=set, compare=False)
     """Why results could not be stored: each reason is said once."""
 
@@ -107,7 +107,7 @@ class Cache:
         ComputationError : from `make`, now or when it was asked before.
         """
         key = self._key(stage, inputs)
-        with self.turns[key]:
+        with self.locks[key]:
             return self._got(stage, key, make, is_lasting)
 
     def _got(

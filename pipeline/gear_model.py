@@ -11,7 +11,7 @@ from flexspline.fea.gear.ball import ball_between_races
 from flexspline.fea.gear.circular_spline import condensed_spline, spline_outline
 from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.drawn_flanks import DrawnFlanks
-from flexspline.fea.gear.kinematics import Mesh
+from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.gear.plug import Plug
 from flexspline.fea.gear.race import condensed_race, race_outline
@@ -71,7 +71,7 @@ def gear_model(
     assert not isinstance(shape, Shaft)
     pitch = gear.pitch_radius_mm
     middle = (shape.inner_radius + shape.ring_radius) / 2
-    mesh = Mesh(
+    mesh = ToothMesh(
         pitch_radius=pitch,
         lag=gear.more_teeth / gear.teeth_circular_spline,
         stroke=gear.centre_distance_mm,

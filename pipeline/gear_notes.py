@@ -9,7 +9,7 @@ from math import degrees
 import numpy as np
 
 from flexspline.fea.gear.equilibrium import Equilibrium
-from flexspline.fea.gear.kinematics import GAP_STEPS, Mesh
+from flexspline.fea.gear.kinematics import GAP_STEPS, ToothMesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.circular_spline import SHALLOWEST
 from flexspline.geometry.design import Design
@@ -82,7 +82,7 @@ def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[Ge
     return found
 
 
-def _cuts_in(mesh: Mesh) -> CuttingFlanks | None:
+def _cuts_in(mesh: ToothMesh) -> CuttingFlanks | None:
     """Where flanks that are not relieved overlap within the working depth."""
     phi = np.linspace(0, mesh.reach, GAP_STEPS)
     front = mesh.free_gaps(phi, mesh.stroke)[0] + mesh.relief(phi)[0]

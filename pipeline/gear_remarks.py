@@ -154,6 +154,17 @@ class BucklingTube:
     stress_MPa: float
 
 
+PlainGearNote = Literal[
+    "play_beside_stroke",
+    "no_ratcheting",
+    "ratcheting_is_upper",
+    "tube_yields_first",
+    "tube_buckles_first",
+]
+"""Those without figures: play makes the free angle smaller as the stroke is not full; the gear ratchets at no
+torque, or the torque at which it does is an upper limit; the tube yields before it buckles, or buckles before
+the gear ratchets."""
+
 GearNote = (
     HalvedBalls
     | LowRatio
@@ -165,14 +176,6 @@ GearNote = (
     | JointClearances
     | FallingStiffness
     | BucklingTube
-    | Literal[
-        "play_beside_stroke",
-        "no_ratcheting",
-        "ratcheting_is_upper",
-        "tube_yields_first",
-        "tube_buckles_first",
-    ]
+    | PlainGearNote
 )
-"""What was simplified; that play makes the free angle smaller as the stroke is not full, that the gear
-ratchets at no torque, or that the torque at which it does is an upper limit; that the tube yields before it
-buckles, or buckles before the gear ratchets."""
+"""What was simplified, and how figures are to be read."""

@@ -18,8 +18,8 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from flexspline.fea.child_python import end_with
+from flexspline.fea.process_lock import shared_locks
 from flexspline.fea.threads import one_thread
-from flexspline.fea.turns import shared_turns
 
 T = TypeVar("T")
 _ALLOWED = ContextVar("allowed", default=False)
@@ -63,8 +63,8 @@ def results_of(
     copying = get_context("fork")
     with ExitStack() as open_files:
         try:
-            numbers = open_files.enter_context(_Numbers(len(tasks)))
-            open_files.enter_context(shared_turns())
+            numbers = open_files.enter_context(_TaskNumbers(len(tasks)))
+            open_files.enter_context(shared_locks())
             here, there = copying.Pipe(duplex=False)
             second = copying.Process(
                 target=_send_results, args=(there, numbers, tasks, os.getpid()), daemon=True
@@ -84,7 +84,7 @@ def results_of(
         return [done[n] if n in done else task() for n, task in enumerate(tasks)]
 
 
-class _Numbers:
+class _TaskNumbers:
     """Of the tasks not yet begun, in a pipe: each is read once, by the process that comes first."""
 
     def __init__(self, count: int) -> None:

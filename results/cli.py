@@ -17,7 +17,6 @@ from flexspline.results.job import (
     keep,
     kept,
     present,
-    put,
     tell,
     tell_all,
     warn,
@@ -84,41 +83,9 @@ def run(
             from flexspline.results.diagnosis.model_notes import model_warnings
 
             tell_all(model_warnings(measured, job.design))
-        from flexspline.pipeline.analysis import run as run_chain
-        from flexspline.pipeline.second_process import second_process
-        from flexspline.results.gear_words import gear_notes
-        from flexspline.results.pictures import RunDrawings, write_pictures
-        from flexspline.results.records import Record, extended_record, run_record
-        from flexspline.results.report.build import write_run_reports
-        from flexspline.results.report.content import ExtendedSum
-        from flexspline.results.warned import solved_warnings
+        from flexspline.results.run import run_answer
 
-        with RunDrawings(job.context) as drawings:
-            with kept(job, json), second_process():
-                result = run_chain(job.context, drawings.add_field, drawings.prepare)
-            tell_all(solved_warnings(result))
-            for line in gear_notes(result.gear) if result.gear else ():
-                tell(f"note: {line}")
-            extended = None
-            if measured is not None:
-                from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
-
-                torque = job.design.load.torque_Nm
-                extended = extended_backlash(result.backlash, measured.model, torque)
-            name = measured.path.name if measured else ""
-            total = ExtendedSum(name, extended.total_arcsec) if extended is not None else None
-
-            def record() -> Record:
-                added = extended_record(extended, name) if extended is not None else {}
-                return run_record(result, job.wall_s) | added
-
-            put(job.folder, record())  # the answer first: drawing may fail
-            pictures = write_pictures(drawings, result, job.folder, extended)
-            for line in pictures.warnings:
-                tell(f"warning: {line}")
-        write_run_reports(job.folder, job.context, result, pictures, total, (job.file,))
-        missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
-        deliver(job, record() | missing, json)
+        deliver(job, run_answer(job, measured, json), json)
 
 
 @app.command()

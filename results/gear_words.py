@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
 from flexspline.geometry.errors import plain_number
@@ -19,6 +20,7 @@ from flexspline.pipeline.gear_remarks import (
     LoadedLastPair,
     LowRatio,
     LowRim,
+    PlainGearNote,
     PressingFlanks,
     RelievedFlanks,
     ShapedFaces,
@@ -33,6 +35,16 @@ if TYPE_CHECKING:
     from flexspline.pipeline.gear import GearCurve
 
 ENDS = {"ratchets": "the gear ratchets", "buckles": "the flexspline's tube buckles"}
+PLAIN_NOTES: Mapping[PlainGearNote, str] = {
+    "play_beside_stroke": "bearing play makes the free angle smaller here, as the plug's stroke is not "
+    "m(z2 - z1)/2: read bearing_play and tight_gear together",
+    "no_ratcheting": "no torque was found at which the gear ratchets",
+    "tube_yields_first": "the flexspline's tube is short or thick: it yields before it buckles",
+    "tube_buckles_first": "the flexspline's tube buckles before the gear ratchets: the ratcheting torque "
+    "lies above the buckling torque",
+    "ratcheting_is_upper": "the ratcheting torque is an upper limit, as the model is elastic; catalogues' "
+    "gears ratchet at 1/50 (ratio 30) to 1/5 (ratio 160) of it",
+}
 
 
 def gear_warnings(curve: GearCurve) -> list[str]:
@@ -99,6 +111,8 @@ def _why_pressing(pressing: PressingFlanks) -> str:
 
 
 def _note(note: GearNote) -> str:
+    if isinstance(note, str):
+        return PLAIN_NOTES[note]
     match note:
         case HalvedBalls(count, computed):
             return (
@@ -156,25 +170,6 @@ def _note(note: GearNote) -> str:
                 f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "
                 f"where its shear stress is {_rounded(stress)} MPa; a wall of lower yield stress fails "
                 "earlier; catalogues' gears ratchet at 0.3 to 0.8 of their buckling torque"
-            )
-        case "play_beside_stroke":
-            return (
-                "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: "
-                "read bearing_play and tight_gear together"
-            )
-        case "no_ratcheting":
-            return "no torque was found at which the gear ratchets"
-        case "tube_yields_first":
-            return "the flexspline's tube is short or thick: it yields before it buckles"
-        case "tube_buckles_first":
-            return (
-                "the flexspline's tube buckles before the gear ratchets: the ratcheting torque lies above "
-                "the buckling torque"
-            )
-        case "ratcheting_is_upper":
-            return (
-                "the ratcheting torque is an upper limit, as the model is elastic; catalogues' gears ratchet "
-                "at 1/50 (ratio 30) to 1/5 (ratio 160) of it"
             )
         case _:
             assert_never(note)

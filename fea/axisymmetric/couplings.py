@@ -15,11 +15,9 @@ from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
 
 from flexspline.fea.axisymmetric.space import Space
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.own_assembly import NodePairs
 from flexspline.fea.types import Elastic
-
-RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
-"""Index of a displacement component at a node."""
 
 RR = BilinearForm(lambda u, v, w: v.grad[0] * u.grad[0] * w.x[0])
 RZ = BilinearForm(lambda u, v, w: v.grad[0] * u.grad[1] * w.x[0])

@@ -21,15 +21,11 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from skfem import FacetBasis, LinearForm, MappingAffine, condense
 
-from flexspline.fea.axisymmetric.couplings import (
-    AXIAL,
-    RADIAL,
-    TANGENTIAL,
-    Couplings,
-)
+from flexspline.fea.axisymmetric.couplings import Couplings
 from flexspline.fea.axisymmetric.factors import PatternSolver, relative_residual
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, at_points, curved
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError

@@ -17,11 +17,12 @@ from math import pi, sin
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined_twice
-from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refinements
 from flexspline.fea.scaled_estimate import ScaledEstimate

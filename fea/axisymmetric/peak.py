@@ -77,7 +77,7 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
         If no point is that far away.
     """
     s, values = model.space, lattice_values(LATTICE_STEPS)
-    lattice, rim = _Lattice(model), _Rim(model)
+    lattice, rim = _Lattice(model), _OutlineEdges(model)
     acting = np.flatnonzero(nodal.any(axis=0))
     parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
     either = np.maximum(*parts)
@@ -169,7 +169,7 @@ class _Lattice:
         return counts
 
 
-class _Rim:
+class _OutlineEdges:
     """The outline's edges, and how far their points are from what is singular."""
 
     def __init__(self, model: HarmonicModel) -> None:

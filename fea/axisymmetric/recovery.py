@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.harmonics import AXIAL, RADIAL, TANGENTIAL, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 

@@ -13,14 +13,9 @@ from math import pi
 import numpy as np
 from skfem import condense
 
-from flexspline.fea.axisymmetric.harmonics import (
-    RADIAL,
-    TANGENTIAL,
-    Fixed,
-    Harmonic,
-    HarmonicModel,
-)
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.types import NMM_PER_NM
 
 

@@ -14,9 +14,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.fea.axisymmetric.followed_mesh import followed
-from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.surface_layer import layer_stiffness
 from flexspline.fea.axisymmetric.twist import TWIST, Twist
+from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.outline import Meridian
 

@@ -8,16 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.harmonics import (
-    RADIAL,
-    TANGENTIAL,
-    Amplitudes,
-    Fixed,
-    Harmonic,
-    HarmonicModel,
-)
+from flexspline.fea.axisymmetric.harmonics import Amplitudes, Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.peak_refinement import HarmonicLoad, StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.outline import Meridian

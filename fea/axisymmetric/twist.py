@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lobes import LOBE_BULK
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.refinement import refine
 from flexspline.fea.shortfall import ToleranceError
 from flexspline.fea.types import NMM_PER_NM, Elastic
@@ -41,7 +42,7 @@ def twist(outline: Meridian, material: Elastic, driven: str, relative_error: flo
     ------
     MeshingError, HarmonicError, ToleranceError
     """
-    found = _Twisted(material, driven, relative_error)
+    found = _TwistRefinement(material, driven, relative_error)
     if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
         raise ToleranceError(f"the energy is off by {found.error:.2g}", why)
     r = found.model.space.places[:, 0]
@@ -50,7 +51,7 @@ def twist(outline: Meridian, material: Elastic, driven: str, relative_error: flo
     return Twist(found.model.mesh, material, rotation, found.solved.twice_energy / NMM_PER_NM)
 
 
-class _Twisted:
+class _TwistRefinement:
     """The finest mesh's solution, and its estimated relative error of the energy."""
 
     def __init__(self, material: Elastic, driven: str, relative_error: float) -> None:

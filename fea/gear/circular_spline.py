@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.gear.condensed import Condensed, along, condensed
 from flexspline.fea.gear.rim import at_pitch_point, fine_enough, triangulated
 from flexspline.fea.types import Elastic

@@ -14,9 +14,9 @@ from math import pi
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.couplings import RADIAL, TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.seat import responses
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 
 
 @dataclass(frozen=True)

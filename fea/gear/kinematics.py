@@ -23,7 +23,7 @@ GAP_STEPS = 1000
 
 
 @dataclass(frozen=True)
-class Mesh:
+class ToothMesh:
     """Two toothed rings, one stretched by w0 into the other; mm and rad.
 
     Attributes

@@ -15,7 +15,7 @@ import numpy as np
 
 from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.equilibrium import Contacts, Equilibrium, equilibrium
-from flexspline.fea.gear.kinematics import Mesh
+from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.plug import Plug
 from flexspline.fea.gear.rim import Rim
 from flexspline.fea.types import NMM_PER_NM
@@ -33,7 +33,7 @@ class GearModel:
     teeth : z1; `most_stations` stand for them at most.
     """
 
-    mesh: Mesh
+    mesh: ToothMesh
     wave_generator: Plug
     rim: Rim
     race: Condensed | None
@@ -117,7 +117,7 @@ class GearModel:
         found["bearing"] += 2 * float(ball[on] ** 2 @ yields)
         return found
 
-    def with_gaps(self, mesh: Mesh, wave_generator: Plug) -> GearModel:
+    def with_gaps(self, mesh: ToothMesh, wave_generator: Plug) -> GearModel:
         """The same bodies with another clearance, play or stroke: how they yield is not found again."""
         other = replace(self, mesh=mesh, wave_generator=wave_generator)
         other.__dict__["shares"] = self.shares

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
+from flexspline.fea.cylindrical import AXIAL, RADIAL
 from flexspline.fea.gear.condensed import Condensed, along, condensed, even
 from flexspline.fea.gear.rim import fine_enough, triangulated
 from flexspline.fea.types import Elastic

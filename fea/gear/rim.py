@@ -14,10 +14,10 @@ from math import pi
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.couplings import RADIAL, TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.gear.condensed import Condensed, along, condensed, shares_along
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import Meridian

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from flexspline.fea.turns import Turn
+from flexspline.fea.process_lock import ProcessLock
 
 LARGE = 30_000
 """Elements: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5 GB of factors in single
 precision. Two of 30 688 and 35 016 at once made 2.45 GB of a command with factors in double."""
-_TURN = Turn(0)
+_LOCK = ProcessLock(0)
 """Place 0 of the locks, which is its own: the cache takes those from 1 on (`pipeline/cache.py`)."""
 
 
@@ -21,5 +21,5 @@ def alone(elements: int) -> Iterator[None]:
     if elements < LARGE:
         yield
         return
-    with _TURN:
+    with _LOCK:
         yield

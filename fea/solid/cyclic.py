@@ -18,8 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.memory import SolverKind
-from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
+from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.solver import Solution, solve
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.solid.unfold import unfolded

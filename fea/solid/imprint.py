@@ -58,7 +58,7 @@ def smooth_patch_edges(surfaces: Sequence[Surface]) -> Iterator[PatchEdge]:
 
 
 @dataclass(frozen=True)
-class Meshed:
+class MesherMesh:
     """A mesher's mesh: points (n, 3) mm in meshing space, tets (m, 4), boundary faces (k, 3).
 
     `facet_surface` (k,): the index of the surface that each face lies on.
@@ -70,14 +70,18 @@ class Meshed:
     facet_surface: np.ndarray
 
 
-def with_patch_edges(mesh: Meshed, surfaces: Sequence[Surface], space: MeshingMap) -> Meshed:
+def with_patch_edges(
+    mesh: MesherMesh, surfaces: Sequence[Surface], space: MeshingMap
+) -> MesherMesh:
     """The mesh in which no face crosses a patch edge, and each is on its side's surface."""
     for edge in smooth_patch_edges(surfaces):
         mesh = _with(mesh, edge, surfaces, space)
     return mesh
 
 
-def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: MeshingMap) -> Meshed:
+def _with(
+    mesh: MesherMesh, edge: PatchEdge, surfaces: Sequence[Surface], space: MeshingMap
+) -> MesherMesh:
     """One patch edge: near nodes onto it, other crossing edges halved, faces given to their side."""
     whole = space.back(mesh.points)
     sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])
@@ -107,11 +111,11 @@ def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Mes
     mine = np.isin(surface, (edge.first, edge.second))
     surface = np.where(mine & (beyond < 0), edge.first, surface)
     surface = np.where(mine & (beyond > 0), edge.second, surface)
-    return Meshed(np.vstack([points, between]), tets, faces, surface)
+    return MesherMesh(np.vstack([points, between]), tets, faces, surface)
 
 
 def _stay(
-    mesh: Meshed,
+    mesh: MesherMesh,
     nodes: np.ndarray,
     there: np.ndarray,
     then: np.ndarray,

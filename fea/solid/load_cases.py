@@ -9,10 +9,11 @@ import numpy as np
 from skfem import Functional, LinearForm
 
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.errors import SolveError
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
 from flexspline.fea.solid.memory import SolverKind
-from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
+from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM, TetMesh

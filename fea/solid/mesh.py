@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.errors import MeshQualityError
-from flexspline.fea.solid.imprint import Meshed, with_patch_edges
+from flexspline.fea.solid.imprint import MesherMesh, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading, graded_background
@@ -89,7 +89,7 @@ def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     points, tets = tetrahedralize(vertices, triangles, settings, background)
     points, tets = _without_orphans(points, tets)
     faces = boundary_faces(tets)
-    raw = Meshed(points, tets, faces, _tag(points, faces, boundary, surface, spec))
+    raw = MesherMesh(points, tets, faces, _tag(points, faces, boundary, surface, spec))
     return _quadratic(with_patch_edges(raw, surface.surfaces, space), surface, space, spec)
 
 
@@ -132,7 +132,9 @@ def _tag(
     return surface.surface_of[triangle]
 
 
-def _quadratic(mesh: Meshed, surface: TaggedSurface, space: MeshingMap, spec: MeshSpec) -> TetMesh:
+def _quadratic(
+    mesh: MesherMesh, surface: TaggedSurface, space: MeshingMap, spec: MeshSpec
+) -> TetMesh:
     """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
     n, tets, faces, facet_surface = len(mesh.points), mesh.tets, mesh.faces, mesh.facet_surface
     raw = into_sector_planes(

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.flatness import mostly_flat
 from flexspline.fea.solid.memory import SolverKind, check_before_assembly
@@ -17,8 +18,6 @@ from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
-RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
-"""Index of a displacement component at a node, in cylindrical coordinates."""
 PLANES = (SYMMETRY_START, SYMMETRY_END)
 
 

@@ -73,12 +73,7 @@ def solve(
     how = by or choose_solver(len(free), entries, corners is not None, slow)
     error_energy = 0.0
     if how == "iterative" and corners is not None:
-        of_lift, of_x = float(u @ of_fixed), 2 * load - right
-
-        def allowed(x: np.ndarray) -> float:
-            # u·Ku of x and the lift, by K x = f on the free unknowns
-            return ITERATION_ENERGY * abs(of_lift + dot(x, of_x))
-
+        allowed = _allowed_energy(load, right, u, of_fixed)
         worth = inf if by else steps_of_factors(len(free), entries)
         try:
             x, error_energy = iterate(matrix, right, is_free, corners(), allowed, worth)
@@ -93,13 +88,26 @@ def solve(
     off = (forces - load)[free]
     residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
     energy = max(float(u @ forces), ABOVE_ZERO)
-    for lost, limit in (
-        (abs(float(u[free] @ off)) / energy, LOST_ENERGY_LIMIT),
-        (error_energy / energy, ITERATION_ENERGY_LIMIT),
-    ):
+    _refuse_lost(abs(float(u[free] @ off)) / energy, error_energy / energy, residual)
+    return Solution(u, forces - load, residual, len(free), how)
+
+
+def _allowed_energy(
+    load: np.ndarray, right: np.ndarray, lift: np.ndarray, of_lift: np.ndarray
+) -> Callable[[np.ndarray], float]:
+    """What an iteration's error may be [N·mm], of the free unknowns x: ITERATION_ENERGY of u·Ku.
+
+    u is x and `lift`, the prescribed values; K times `lift` is `of_lift`, K x `right` on the free unknowns.
+    """
+    own, of_x = float(lift @ of_lift), 2 * load - right
+    return lambda x: ITERATION_ENERGY * abs(own + dot(x, of_x))
+
+
+def _refuse_lost(unbalanced: float, unfinished: float, residual: float) -> None:
+    """Raise SolveError where shares of the energy are lost: out of balance, or in an iteration's error."""
+    for lost, limit in ((unbalanced, LOST_ENERGY_LIMIT), (unfinished, ITERATION_ENERGY_LIMIT)):
         if not lost < limit:
             raise SolveError(
                 f"{lost:.1e} of the energy is lost in the solve, allowed {limit:.0e}"
                 f" (relative residual {residual:.1e}): part of the model may be unsupported"
             )
-    return Solution(u, forces - load, residual, len(free), how)

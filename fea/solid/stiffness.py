@@ -73,7 +73,7 @@ class MeshSequence:
 
 
 @dataclass(frozen=True)
-class SolidStiffness:
+class RefinedStiffness:
     """The stiffness, the finest mesh's solution for 1 rad, and all meshes, coarse to fine."""
 
     stiffness: Stiffness
@@ -89,7 +89,7 @@ def solid_stiffness(
     symmetry: str,
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
-) -> SolidStiffness:
+) -> RefinedStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
@@ -107,7 +107,7 @@ def solid_stiffness(
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {percent(found.half)} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)
-    return SolidStiffness(answer, tuple(found.meshes), found.solved)
+    return RefinedStiffness(answer, tuple(found.meshes), found.solved)
 
 
 class _SolidTorsion:

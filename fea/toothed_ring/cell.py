@@ -27,6 +27,7 @@ from skfem import BilinearForm, Functional, LinearForm, bmat, condense
 from flexspline.fea.axisymmetric.factors import relative_residual, solved
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, straight
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.tooth import ToothCell
 
@@ -34,8 +35,6 @@ DEGREE = 6
 """Of quadrature: exact for r·|∇u|² and more; 1/r varies little over an element."""
 LARGEST_RESIDUAL = 1e-8
 """Of ‖Ku − f‖/‖f‖: far below the error of the mesh."""
-RADIAL, TANGENTIAL = 0, 1
-"""Index of a displacement component at a node."""
 
 
 def _around(f: Any, w: Any) -> Any:

@@ -30,7 +30,7 @@ class FarReading:
 
 
 @dataclass(frozen=True)
-class Turned:
+class FallingAngle:
     """The angle falls where torque rises."""
 
     of: Literal["sweep", "end_points"]
@@ -41,7 +41,7 @@ class Still:
     """The angle never changes."""
 
 
-Absurd = FarTwist | FarSlope | FarReading | Turned | Still
+Absurd = FarTwist | FarSlope | FarReading | FallingAngle | Still
 
 
 def absurd_words(absurd: Absurd, given: Collection[str] = ()) -> str:
@@ -53,9 +53,9 @@ def absurd_words(absurd: Absurd, given: Collection[str] = ()) -> str:
     match absurd:
         case Still():
             return "the angle is the same in all rows: was its channel connected?"
-        case Turned("sweep"):
+        case FallingAngle("sweep"):
             return "the angle falls where torque rises: is the sign of angle or torque reversed?"
-        case Turned():
+        case FallingAngle():
             return "angle_plus lies below angle_minus: are the two columns swapped, or is the sign reversed?"
         case FarTwist():
             turned = " with its sign reversed" if absurd.ratio < 0 else ""

@@ -40,7 +40,7 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose
 from flexspline.pipeline.diagnosis.timeless import in_rows
 
 if TYPE_CHECKING:
-    from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs
+    from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
     from flexspline.pipeline.gear_chain import Chain
     from flexspline.pipeline.parts import AnalysisContext
 
@@ -68,7 +68,7 @@ class Diagnosis:
     sweep: SweepAnalysis | None = field(default=None, repr=False)
     end_points: EndPointAnalysis | None = field(default=None, repr=False)
     specimens: SpecimenAnalysis | None = field(default=None, repr=False)
-    gear_inputs: GearInputs | None = None
+    gear_inputs: GearIdentification | None = None
     given: tuple[str, ...] = ()
 
     @property

@@ -9,10 +9,10 @@ import numpy as np
 from flexspline.pipeline.backlash import series_stiffness
 from flexspline.pipeline.diagnosis.absurd_size import (
     Absurd,
+    FallingAngle,
     FarReading,
     FarTwist,
     Still,
-    Turned,
     absurd_words,
 )
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
@@ -92,7 +92,7 @@ def absurd_sweep(size: SweepSize, sweep: Sweep) -> Absurd | None:
     ):
         return _far_twist(size.chord, size, sweep)
     if high < OPPOSITE_SHARE:
-        return Turned("sweep")
+        return FallingAngle("sweep")
     if size.span_arcsec > ABSURD_RATIO * (size.simulated_arcsec + POSITION_ERROR_arcsec):
         return _far_twist(size.span_arcsec / size.simulated_arcsec, size, sweep)
     return far_slope(size, sweep) if slope_beyond(size, ABSURD_RATIO) else None
@@ -199,7 +199,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | No
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
         return FarReading("end_points", ratio, _suspect(column, unit))
-    return Turned("end_points") if ratio < OPPOSITE_SHARE else None
+    return FallingAngle("end_points") if ratio < OPPOSITE_SHARE else None
 
 
 def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> Absurd | None:

@@ -52,11 +52,11 @@ class Leaps:
 
 
 @dataclass(frozen=True)
-class Leaping:
+class LeapingAngle:
     """An angle that leaps by more than the simulated twist [arcsec]."""
 
     leaps: Leaps
     twist_arcsec: float
 
 
-Shortage = ConstantTorque | FewTorques | FewRows | FewSpecimens | Drowned | Leaping
+Shortage = ConstantTorque | FewTorques | FewRows | FewSpecimens | Drowned | LeapingAngle

@@ -52,7 +52,7 @@ class LocalWorkers(Executor):
 
     def __init__(self, count: int) -> None:
         self._calls: queue.SimpleQueue[tuple[Future[Any], bytes] | None] = queue.SimpleQueue()
-        self._workers = [_Worker() for _ in range(count)]
+        self._workers = [_WorkerProcess() for _ in range(count)]
         self._threads = [
             threading.Thread(target=self._feed, args=(w,), daemon=True) for w in self._workers
         ]
@@ -78,7 +78,7 @@ class LocalWorkers(Executor):
             for thread in self._threads:
                 thread.join()
 
-    def _feed(self, worker: _Worker) -> None:
+    def _feed(self, worker: _WorkerProcess) -> None:
         while call := self._calls.get():
             future, frame = call
             if future.set_running_or_notify_cancel():
@@ -92,7 +92,7 @@ class LocalWorkers(Executor):
         worker.end()
 
 
-class _Worker:
+class _WorkerProcess:
     """One process at the end of a pipe; another in its place where it died."""
 
     def __init__(self) -> None:

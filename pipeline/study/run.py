@@ -31,12 +31,12 @@ from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
-from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
+from flexspline.pipeline.study.source import PlannedDesigns, SampledDesigns, solves_of, study_name
 from flexspline.pipeline.study.start import start_outcome
 from flexspline.pipeline.study.storage_faults import TrialStoreError, helps
 from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.study import Study
-from flexspline.pipeline.study.tolerance import Scattered, scattered
+from flexspline.pipeline.study.tolerance import ScatteredDesigns, scattered
 from flexspline.pipeline.study.verify import verify
 
 HOLES_NOTE = "holes"
@@ -48,9 +48,9 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
         return scattered(study, holes)
     solves = solves_of(study, USUAL_SOLVES)
     if study.file.run.method == "optimize":
-        return Sampled(study, solves, holes=holes)
+        return SampledDesigns(study, solves, holes=holes)
     plan = grid(study) if study.file.run.method == "grid" else Sobol(study)
-    return Planned(study, solves, plan, holes=holes)
+    return PlannedDesigns(study, solves, plan, holes=holes)
 
 
 def nominal_holes(
@@ -161,7 +161,7 @@ def run_study(
 
 def _scattered(result: StudyResult, source: Source) -> StudyResult:
     """With what a tolerance study tells; too many designs that fail cost that, not the rows."""
-    if not isinstance(source, Scattered):
+    if not isinstance(source, ScatteredDesigns):
         return result
     seed, keys = result.study.file.run.seed, result.study.outputs
     try:

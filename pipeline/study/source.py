@@ -57,7 +57,7 @@ class _Asked:
 
 
 @dataclass(frozen=True)
-class Planned(_Asked):
+class PlannedDesigns(_Asked):
     """Designs of a plan."""
 
     plan: StudyPlan
@@ -77,7 +77,7 @@ class Planned(_Asked):
 
 
 @dataclass(frozen=True)
-class Sampled(_Asked):
+class SampledDesigns(_Asked):
     """Designs that Optuna's sampler suggests, learning from those before."""
 
     @property

@@ -20,7 +20,7 @@ from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.plan import Listed, linked
-from flexspline.pipeline.study.source import Planned, solves_of
+from flexspline.pipeline.study.source import PlannedDesigns, solves_of
 from flexspline.pipeline.study.study import Study, StudyError
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def saltelli(inputs: tuple[ScatteredInput, ...], base: int, seed: int) -> np.nda
 
 
 @dataclass(frozen=True)
-class Scattered(Planned):
+class ScatteredDesigns(PlannedDesigns):
     """Designs of a tolerance study."""
 
     inputs: tuple[ScatteredInput, ...]
@@ -184,7 +184,7 @@ class Scattered(Planned):
         return Task(self._tables, changed, self.solves, self.holes)
 
 
-def scattered(study: Study, holes: HolesEffect | None) -> Scattered:
+def scattered(study: Study, holes: HolesEffect | None) -> ScatteredDesigns:
     """The source of a tolerance study.
 
     Raises
@@ -200,4 +200,4 @@ def scattered(study: Study, holes: HolesEffect | None) -> Scattered:
     points = saltelli(inputs, base, study.file.run.seed)
     solves = solves_of(study, ("torsion",))
     plan = Listed(tuple(x.key for x in inputs), points)
-    return Scattered(study, solves, plan, inputs, holes=holes)
+    return ScatteredDesigns(study, solves, plan, inputs, holes=holes)

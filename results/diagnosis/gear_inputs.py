@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.fitted_input import FittedInput
-    from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs
+    from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
     from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair
 
 
-def gear_inputs_record(found: GearInputs) -> dict[str, Any]:
+def gear_inputs_record(found: GearIdentification) -> dict[str, Any]:
     """As in docs/contract.md; what was not found is absent."""
     record: dict[str, Any] = {
         "outcome": found.outcome,
@@ -52,7 +52,7 @@ def gear_inputs_record(found: GearInputs) -> dict[str, Any]:
     return record
 
 
-def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
+def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
     """One sentence a finding."""
     best = found.fitted[0]
     if found.outcome == "consistent":
@@ -101,7 +101,7 @@ def _value(one: FittedInput) -> str:
     )
 
 
-def _gain(found: GearInputs) -> str:
+def _gain(found: GearIdentification) -> str:
     if found.left_arcsec is None:
         return f", {found.remainder_arcsec:.3g} arcsec rms"
     return (
@@ -110,7 +110,7 @@ def _gain(found: GearInputs) -> str:
     )
 
 
-def _next(found: GearInputs) -> str:
+def _next(found: GearIdentification) -> str:
     if found.apart is None:
         return "no torque up to twice the largest tells them apart, so measure one of them itself"
     return (

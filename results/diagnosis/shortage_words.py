@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.shortage import (
     FewRows,
     FewSpecimens,
     FewTorques,
-    Leaping,
+    LeapingAngle,
     Shortage,
 )
 from flexspline.results.numbers import figures_text
@@ -34,13 +34,13 @@ def shortage_words(shortage: Shortage) -> str:
                 f"the noise of one reading, {noise:.3g} arcsec, exceeds the simulated twist, "
                 f"{twist:.3g} arcsec"
             )
-        case Leaping():
+        case LeapingAngle():
             return _leaping(shortage)
         case _:
             assert_never(shortage)
 
 
-def _leaping(shortage: Leaping) -> str:
+def _leaping(shortage: LeapingAngle) -> str:
     leaps = shortage.leaps
     (least, most), (low, high) = leaps.sizes_arcsec, leaps.torques_Nm
     where = f"{low:.3g} to {high:.3g}".replace("-", "−")

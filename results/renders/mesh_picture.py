@@ -16,7 +16,7 @@ from flexspline.results.renders.picture_elements import (
     sector_words,
     wires,
 )
-from flexspline.results.renders.scene import Layer, shoot
+from flexspline.results.renders.scene import Actor, shoot
 from flexspline.results.renders.sheet import LARGE_INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.surface import Skin, creases, element_edges, opening, skin, surface
 from flexspline.results.style import INK, PALETTE, STEEL
@@ -50,9 +50,9 @@ def write_mesh_picture(path: Path, mesh: TetMesh, part_name: str) -> None:
     )
 
 
-def _layers(whole: WholePart, shown: Skin, colour_of: dict[str, str], line: float) -> list[Layer]:
+def _layers(whole: WholePart, shown: Skin, colour_of: dict[str, str], line: float) -> list[Actor]:
     layers = [
-        Layer(surface(whole.nodes, facets), {"color": colour, **MATT})
+        Actor(surface(whole.nodes, facets), {"color": colour, **MATT})
         for colour, facets in _by_colour(whole, shown, colour_of)
         if len(facets)
     ]

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.fea.types import StressPeak
 from flexspline.results.quantities import quantity
-from flexspline.results.renders.scene import Layer, View
+from flexspline.results.renders.scene import Actor, View
 from flexspline.results.renders.sheet import Bar, Mark
 from flexspline.results.renders.surface import Opening, Skin, creases, surface
 from flexspline.results.style import COLOUR_MAP, INK
@@ -35,15 +35,15 @@ def below_view(cut: Opening) -> View:
     return View(cut.middle_deg + 180.0, -42.0)
 
 
-def wires(mesh: pv.PolyData, colour: str, width: float) -> Layer:
+def wires(mesh: pv.PolyData, colour: str, width: float) -> Actor:
     """Lines of `width` pixels at the rendering's size, kept above the surface they lie on."""
     pull = 1.5e-3 * mesh.length
-    return Layer(mesh, {"color": colour, "line_width": width, "lighting": False}, pull)
+    return Actor(mesh, {"color": colour, "line_width": width, "lighting": False}, pull)
 
 
 def stress_layers(
     points: np.ndarray, mises: np.ndarray, shown: Skin, peak: StressPeak, line: float = 2.4
-) -> list[Layer]:
+) -> list[Actor]:
     """The skin coloured by von Mises stress from 0 to the reported peak, with its creases."""
     skin_mesh = surface(points, shown.facets).copy(deep=False)
     skin_mesh.point_data["mises"] = mises[skin_mesh.point_data["node"]]
@@ -54,7 +54,7 @@ def stress_layers(
         "n_colors": 256,
         **FLAT_LIT,
     }
-    return [Layer(skin_mesh, options), wires(creases(points, shown.facets), INK, line)]
+    return [Actor(skin_mesh, options), wires(creases(points, shown.facets), INK, line)]
 
 
 def stress_bar(peak: StressPeak, beyond: bool) -> Bar:

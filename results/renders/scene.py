@@ -36,7 +36,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Layer:
+class Actor:
     """One thing to draw, pyvista's options for it, and how far to pull it towards the eye [mm].
 
     Lines on a surface are pulled by a little, or the surface would swallow pieces of them; in
@@ -64,7 +64,7 @@ class Shot:
         return width / 2 + float(right), height / 2 - float(up)
 
 
-def shoot(layers: Sequence[Layer], view: View, size: tuple[int, int], margin: float = 0.03) -> Shot:
+def shoot(layers: Sequence[Actor], view: View, size: tuple[int, int], margin: float = 0.03) -> Shot:
     """Draw the layers so that they fill `size` (width, height) pixels up to the margin.
 
     Raises

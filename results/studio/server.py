@@ -12,19 +12,21 @@ from aiohttp import WSMsgType, web
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.load import LARGEST_BYTES, design_from, tables_from
+from flexspline.geometry.input_file import LARGEST_TOML_BYTES
+from flexspline.geometry.load import design_from, tables_from
 from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.template import design_text, template
+from flexspline.pipeline.diagnosis.measurement.grid import LARGEST_MEASURED_BYTES
 from flexspline.results.studio.fields import form, received
 from flexspline.results.studio.guard import Guard, add_headers
 from flexspline.results.studio.jobs import SERVED
 from flexspline.results.studio.page_style import page_style
 from flexspline.results.studio.session import Session
-from flexspline.results.studio.tab import Workers
+from flexspline.results.studio.tab import StudioWorkers
 
-LARGEST_MESSAGE = 2 * LARGEST_BYTES
+LARGEST_MESSAGE = 2 * LARGEST_TOML_BYTES
 """A design as JSON is at most a little larger than as TOML."""
-LARGEST_MEASURED = 20_000_000
+LARGEST_UPLOAD = LARGEST_MEASURED_BYTES // 10
 """Bytes of a measured file through the page: a tenth of what the command reads."""
 _TYPES = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg": "image/svg+xml"}
 
@@ -35,7 +37,7 @@ class Studio:
 
     guard: Guard
     design: Design
-    workers: Workers = field(default_factory=Workers.of_this_machine)
+    workers: StudioWorkers = field(default_factory=StudioWorkers.of_this_machine)
     sessions: dict[str, Session] = field(default_factory=dict)
     page: dict[str, tuple[bytes, str]] = field(default_factory=lambda: _page())
 
@@ -45,7 +47,7 @@ STUDIO: web.AppKey[Studio] = web.AppKey("studio", Studio)
 
 def application(studio: Studio) -> web.Application:
     """Routes and rules; the workers live as long as it runs."""
-    app = web.Application(middlewares=[studio.guard.middleware], client_max_size=LARGEST_MEASURED)
+    app = web.Application(middlewares=[studio.guard.middleware], client_max_size=LARGEST_UPLOAD)
     app[STUDIO] = studio
     app.router.add_get("/", _file)
     app.router.add_get("/page/{name}", _file)
@@ -99,8 +101,10 @@ def _opened(design: Design) -> dict[str, Any]:
 
 
 async def _start(request: web.Request) -> web.Response:
-    """The design that the command named, and how charts look."""
-    return _json({**_opened(request.app[STUDIO].design), "style": page_style()})
+    """The design that the command named, how charts look, and what files may be sent."""
+    largest = {"design": LARGEST_TOML_BYTES, "measured": LARGEST_UPLOAD}
+    opened = _opened(request.app[STUDIO].design)
+    return _json({**opened, "style": page_style(), "largest_bytes": largest})
 
 
 async def _open(request: web.Request) -> web.Response:
@@ -112,7 +116,7 @@ async def _open(request: web.Request) -> web.Response:
         elif request.content_type == "application/json":
             return _json(_opened(received(await _sent(request))))
         else:
-            tables = tables_from(await _body(request, LARGEST_BYTES), "the file")
+            tables = tables_from(await _body(request, LARGEST_TOML_BYTES), "the file")
         return _json(_opened(design_from(tables)))
     except DesignError as fault:
         return _json({"key": fault.key, "text": str(fault)}, status=422)
@@ -132,7 +136,7 @@ async def _measured(request: web.Request) -> web.Response:
     session = request.app[STUDIO].sessions.get(request.match_info["tab"])
     if session is None:
         raise web.HTTPNotFound
-    session.measured = await _body(request, LARGEST_MEASURED)
+    session.measured = await _body(request, LARGEST_UPLOAD)
     return _json({"bytes": len(session.measured)})
 
 

@@ -13,13 +13,13 @@ from flexspline.results.studio.fields import received
 from flexspline.results.studio.job_summary import job_summary
 from flexspline.results.studio.jobs import Done, JobKind, StudioJob
 from flexspline.results.studio.requests import Start, Want, request_from
-from flexspline.results.studio.tab import Tab, Workers
+from flexspline.results.studio.tab import StudioWorkers, Tab
 
 
 class Session:
     """A tab with its jobs: at most one of each kind; a new one replaces the old one and its files."""
 
-    def __init__(self, workers: Workers, socket: web.WebSocketResponse) -> None:
+    def __init__(self, workers: StudioWorkers, socket: web.WebSocketResponse) -> None:
         self._socket = socket
         self.tab = Tab(workers, self._send)
         self.measured = b""

@@ -32,7 +32,7 @@ ROUGH = f"{PEAK_OF['wave_generator']}_rough"
 
 
 @dataclass(frozen=True)
-class Workers:
+class StudioWorkers:
     """Quick: K_b, K_e and K_b at the lobes. Picture: shape and stress. Slow: all the rest."""
 
     quick: Worker
@@ -40,7 +40,7 @@ class Workers:
     slow: Worker
 
     @classmethod
-    def of_this_machine(cls) -> Workers:
+    def of_this_machine(cls) -> StudioWorkers:
         return cls(Worker("quick"), Worker("picture", 2), Worker("slow", 4))
 
     def start(self) -> None:
@@ -53,7 +53,7 @@ class Workers:
 
 
 @dataclass
-class Wanted:
+class WantedDesign:
     """A design as the tab sent it; `number` grows with each.
 
     `begun` is set when its first figures are there, or a newer design is.
@@ -70,10 +70,10 @@ class Wanted:
 class Tab:
     """A connected tab; `key` is its secret, by which its uploads and files are found."""
 
-    def __init__(self, workers: Workers, send: Send) -> None:
+    def __init__(self, workers: StudioWorkers, send: Send) -> None:
         self.key = secrets.token_urlsafe(24)
         self._workers, self._send = workers, send
-        self._wanted: Wanted | None = None
+        self._wanted: WantedDesign | None = None
         self._lanes: list[asyncio.Task[None]] = []
         self._news = [asyncio.Event() for _ in range(3)]
 
@@ -107,7 +107,7 @@ class Tab:
             key = fault.key if isinstance(fault, DesignError) else "bearing.radial_clearance_um"
             await self._send({"is": "fault", "number": number, "key": key, "text": str(fault)})
             return
-        self._set(Wanted(number, design, tables, view))
+        self._set(WantedDesign(number, design, tables, view))
         await self._send({"is": "taken", "number": number, "left_out": left_out(design),
                           "agreement": agreement(design), "warnings": list(warnings(design)),
                           **first})  # fmt: skip
@@ -116,7 +116,7 @@ class Tab:
         if self._wanted is not None and self._wanted.view != view:
             self._set(replace(self._wanted, view=view))
 
-    def _set(self, wanted: Wanted) -> None:
+    def _set(self, wanted: WantedDesign) -> None:
         if self._wanted is not None:
             self._wanted.begun.set()
         self._wanted = wanted
@@ -159,7 +159,7 @@ class Tab:
                 if late:  # told all the same: while a slider moves, every answer comes late
                     break
 
-    async def _tell(self, wanted: Wanted, question: str, found: Any) -> None:
+    async def _tell(self, wanted: WantedDesign, question: str, found: Any) -> None:
         if isinstance(found, Fault):
             await self._send({"is": "failed", "number": wanted.number, "question": question,
                               "key": found.key, "text": found.message})  # fmt: skip
@@ -174,7 +174,7 @@ class Tab:
             await self._send(picture)
 
 
-def _said(wanted: Wanted) -> dict[str, Any]:
+def _said(wanted: WantedDesign) -> dict[str, Any]:
     try:
         return {"is": "answer", **message(wanted.design, wanted.found)}
     except BearingPlayDomainError as fault:

@@ -17,7 +17,8 @@ import pytest
 from changed_text import changed_text
 
 from flexspline.geometry.errors import DesignError, DesignFileError
-from flexspline.geometry.load import LARGEST_BYTES, load_design
+from flexspline.geometry.input_file import LARGEST_TOML_BYTES
+from flexspline.geometry.load import load_design
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,7 @@ FILES = {
     "null byte": (b"name = \x00", "not valid TOML"),
     "deep nesting": (b"x = " + b"[" * 50_000, "TOML|nested"),
     "huge integer": (b"x = " + b"9" * 9000, "TOML"),
-    "too large": (b"#" * (LARGEST_BYTES + 1), "1000001 bytes"),
+    "too large": (b"#" * (LARGEST_TOML_BYTES + 1), "1000001 bytes"),
     "empty": (b"", "the file is empty"),
     "comments alone": (b"# nothing\n", "holds only comments"),
     "not a table": (b"flexspline = 3", "flexspline = 3|name is missing"),

@@ -17,7 +17,7 @@ from flexspline.geometry.design import Design
 from flexspline.results.studio.guard import Guard
 from flexspline.results.studio.questions import answer
 from flexspline.results.studio.server import Studio, application
-from flexspline.results.studio.tab import Workers
+from flexspline.results.studio.tab import StudioWorkers
 
 Hold = Callable[[str, dict[str, Any]], bool]
 LOOK_S = 0.02
@@ -66,7 +66,7 @@ def held_studio(design: Design, suite: Path) -> Iterator[HeldStudio]:
     studio = HeldStudio(suite)
     loop, ready = asyncio.new_event_loop(), threading.Event()
     ended = asyncio.Event()
-    workers: Any = Workers(*(HeldWorker(studio) for _ in range(3)))  # type: ignore[arg-type]
+    workers: Any = StudioWorkers(*(HeldWorker(studio) for _ in range(3)))  # type: ignore[arg-type]
 
     async def serve() -> None:
         runner = web.AppRunner(application(Studio(studio.guard, design, workers)))

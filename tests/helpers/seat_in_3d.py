@@ -18,9 +18,10 @@ from scipy.sparse import bmat, csr_matrix
 
 from flexspline.fea.axisymmetric.lift_off import pushing
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.direct import factorised
-from flexspline.fea.solid.model import RADIAL, TANGENTIAL, Model
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.solid.unfold import unfolded

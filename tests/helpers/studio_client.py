@@ -15,7 +15,7 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.results.studio.guard import Guard
 from flexspline.results.studio.server import Studio, application
-from flexspline.results.studio.tab import Workers
+from flexspline.results.studio.tab import StudioWorkers
 
 DESIGN = design_from(tomllib.loads(template("cup")))
 TABLES = DESIGN.tables
@@ -38,7 +38,7 @@ def with_client(
 ) -> Studio:
     """Run a check against a server; `known`: the client has been let in, as a browser is."""
     worker = worker or Idle()
-    studio = Studio(guard or Guard("127.0.0.1"), DESIGN, Workers(worker, worker, worker))
+    studio = Studio(guard or Guard("127.0.0.1"), DESIGN, StudioWorkers(worker, worker, worker))
 
     async def run() -> None:
         server, many = TestServer(application(studio)), TCPConnector(limit=0)

@@ -14,7 +14,7 @@ from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.shortage import Leaping
+from flexspline.pipeline.diagnosis.shortage import LeapingAngle
 from flexspline.pipeline.diagnosis.structure import Slip
 from flexspline.pipeline.diagnosis.sweep.slip import slip_of
 
@@ -164,7 +164,7 @@ def test_a_strain_wave_gear_that_sticks_gives_no_verdict(tmp_path: Path) -> None
     assert found.outcome.next_measurement is not None
     assert found.outcome.next_measurement.vary == "torque_Nm"
     # five jumps of 0.36 to 0.94°, at 8 to 18 N·m: no noise of a reading that steps by 0.005°
-    assert isinstance(found.outcome.too_little, Leaping)
+    assert isinstance(found.outcome.too_little, LeapingAngle)
     assert found.outcome.too_little.leaps.count == 5
     assert found.outcome.too_little.leaps.torques_Nm == pytest.approx((8.0, 18.0), abs=0.5)
 

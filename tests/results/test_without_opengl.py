@@ -84,7 +84,7 @@ def test_both_reports_say_what_is_missing_and_why(bare) -> None:
 def test_a_missing_picture_is_not_remembered(bare, tmp_path: Path, monkeypatch) -> None:
     """The reports have their own tests."""
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(bare[0].parent / "cache"))
-    monkeypatch.setattr("flexspline.results.report.build.write_run_reports", lambda *_: None)
+    monkeypatch.setattr("flexspline.results.run.write_run_reports", lambda *_: None)
     again = CliRunner().invoke(app, ["run", str(bare[0]), "--json", "--out", str(tmp_path)])
     assert again.exit_code == 0, again.stderr
     assert "mesh of" not in again.stderr
@@ -93,8 +93,6 @@ def test_a_missing_picture_is_not_remembered(bare, tmp_path: Path, monkeypatch) 
 
 
 def test_the_answer_is_on_disk_before_anything_is_drawn(bare, tmp_path, monkeypatch) -> None:
-    from flexspline.results import pictures
-
     seen = []
 
     def stop(*_: object) -> None:
@@ -102,7 +100,7 @@ def test_the_answer_is_on_disk_before_anything_is_drawn(bare, tmp_path, monkeypa
         raise KeyboardInterrupt
 
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(bare[0].parent / "cache"))
-    monkeypatch.setattr(pictures, "write_pictures", stop)
+    monkeypatch.setattr("flexspline.results.run.write_pictures", stop)
     done = CliRunner().invoke(app, ["run", str(bare[0]), "--out", str(tmp_path)])
     assert done.exit_code == 130
     answer = json.loads(bare[2].stdout)

@@ -12,14 +12,7 @@ from hypothesis import strategies as st
 from lobe_stiffness import lobe_stiffness
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.harmonics import (
-    AXIAL,
-    RADIAL,
-    Fixed,
-    Harmonic,
-    HarmonicError,
-    HarmonicModel,
-)
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicError, HarmonicModel
 from flexspline.fea.axisymmetric.lobes import (
     LOBE_HALF_WIDTH,
     lobe_coefficient,
@@ -28,6 +21,7 @@ from flexspline.fea.axisymmetric.lobes import (
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import AXIAL, RADIAL
 from flexspline.fea.types import Elastic
 from flexspline.geometry.meridian import cup_meridian
 from flexspline.geometry.outline import Meridian

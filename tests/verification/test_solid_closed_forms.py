@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.load_cases import ellipse, torsion
-from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
+from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.stress import nodal_stress, von_mises
 from flexspline.fea.types import Elastic
 

@@ -105,7 +105,7 @@ def unit_evidence(deviations: UnitDeviations, terms: Sequence[EndPointRegressor]
 
 
 @dataclass(frozen=True)
-class _GridCells:
+class _GridEvidence:
     """Of each (ρ, σ) of the grid: log evidence, log likelihood at the mean, both (cells,); posterior means
     and variances (cells, terms + 2); own parts (cells, units)."""
 
@@ -121,7 +121,7 @@ def _cells(
     terms: Sequence[EndPointRegressor],
     rho: np.ndarray,
     sigma: np.ndarray,
-) -> _GridCells:
+) -> _GridEvidence:
     """All cells at once.
 
     Parameters are the terms' amplitudes, Young's modulus, the gap's common part, and, for the mid
@@ -160,7 +160,7 @@ def _cells(
     count = np.bincount(deviations.unit, minlength=deviations.units)
     shrink = own_variance[:, None] / (sigma[:, None] ** 2 + own_variance[:, None] * count)
     own = shrink * _unit_sums(of_total.left, deviations)
-    return _GridCells(
+    return _GridEvidence(
         of_total.evidence + of_mid.evidence + sign, of_total.likelihood + of_mid.likelihood,
         means, variances, own,
     )  # fmt: skip

@@ -29,7 +29,7 @@ FEWEST_ROWS_OF_UNIT = 24
 
 
 @dataclass(frozen=True)
-class Corner:
+class TorqueCorner:
     """Where torque changes its rate suddenly: by `change`, in shares of the ramps' rate."""
 
     unit: int
@@ -37,7 +37,7 @@ class Corner:
     change: float
 
 
-def corners_of(history: History) -> list[Corner]:
+def corners_of(history: History) -> list[TorqueCorner]:
     """Corners of the torque's programme: changes of rate beyond `SUDDEN` and noise within a few rows."""
     fast = ramp_rate(history)
     if fast == 0 or history.time_s is None:
@@ -55,7 +55,7 @@ def corners_of(history: History) -> list[Corner]:
         change = _sudden(time, torque / fast, noise, widths, cycle)
         most = max(MET_WIDTHS * width, ROWS_BESIDE_CORNER)
         found += [
-            Corner(unit, _met(time, torque, i, way), float(change[i]))
+            TorqueCorner(unit, _met(time, torque, i, way), float(change[i]))
             for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), most)
         ]
     return found

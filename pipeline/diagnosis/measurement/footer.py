@@ -24,7 +24,7 @@ _FAILED = {
 """What instruments write for a reading that failed; it is no remark."""
 
 
-class _Cell(Enum):
+class _CellKind(Enum):
     """What one text of a row may be."""
 
     WORDS = auto()
@@ -50,14 +50,14 @@ def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[
     at = [i for i, cell in enumerate(row) if cell.strip()]
     found = [_kind(row[i].strip()) for i in at]
     first = row[at[0]].strip()
-    if len(head) < 2 or found[0] is not _Cell.WORDS or _WORD.search(first) is None:
+    if len(head) < 2 or found[0] is not _CellKind.WORDS or _WORD.search(first) is None:
         return False
-    if _Cell.NEITHER in found:
+    if _CellKind.NEITHER in found:
         return False
     if head[0] in LABELS and len(row) > 1:
         known = {r[0].strip() for r in rows[:-1]}
-        return len(at) > 1 and _Cell.NUMBER not in found and first not in known
-    numbers = found.count(_Cell.NUMBER)
+        return len(at) > 1 and _CellKind.NUMBER not in found and first not in known
+    numbers = found.count(_CellKind.NUMBER)
     if not numbers:
         return True
     spaced = all(row[i][0].isspace() for i in at[1:]) and not any(
@@ -68,9 +68,9 @@ def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[
     return 2 * numbers <= len(found) and (spaced or cut_off)
 
 
-def _kind(text: str) -> _Cell:
+def _kind(text: str) -> _CellKind:
     if is_stamp(text) or _BEGINS_WITH_NUMBER.match(text):
-        return _Cell.NUMBER
+        return _CellKind.NUMBER
     if text.lstrip("+-").lower() in _FAILED or not _LETTER.search(text):
-        return _Cell.NEITHER
-    return _Cell.WORDS
+        return _CellKind.NEITHER
+    return _CellKind.WORDS

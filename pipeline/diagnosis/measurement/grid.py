@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.measurement.head import Head, LineSplitter, h
 from flexspline.pipeline.diagnosis.measurement.head_again import heads_again
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
-LARGEST_BYTES = 200_000_000
+LARGEST_MEASURED_BYTES = 200_000_000
 """Two million rows of 100 letters; a file beyond this is some other file, or never ends."""
 LARGEST_ROWS = 2_000_000
 """Ten readings a second fill them in two days and a half; a fit takes minutes and GB on them."""
@@ -72,7 +72,7 @@ def read_grid(path: Path) -> CellGrid:
     MeasurementError : no text, no head, rows that do not fit it.
     """
     try:
-        raw = read_input(path, LARGEST_BYTES, "a measured file")
+        raw = read_input(path, LARGEST_MEASURED_BYTES, "a measured file")
     except InputFileError as error:
         raise MeasurementError(path, None, str(error)) from None
     if raw.startswith(BEGIN):

@@ -76,11 +76,11 @@ def _rows(path: Path, book: zipfile.ZipFile) -> list[tuple[int, list[str]]]:
     shared = _shared(path, book) if "xl/sharedStrings.xml" in names else []
     dates = _dates(path, book) if "xl/styles.xml" in names else frozenset()
     old = any(_tag(e) == "workbookPr" and e.get("date1904") in ("1", "true") for e in top.iter())
-    cells = _Cells(shared, dates, EPOCH_1904 if old else EPOCH)
+    cells = _CellTexts(shared, dates, EPOCH_1904 if old else EPOCH)
     return list(cells.rows(io.BytesIO(_part(path, book, part))))
 
 
-class _Cells:
+class _CellTexts:
     """Texts of cells, by the workbook's shared strings, date styles and day 0."""
 
     def __init__(self, shared: list[str], dates: frozenset[int], epoch: datetime) -> None:

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.geometry.input_file import LARGEST_TOML_BYTES, InputFileError, read_input
 from flexspline.geometry.toml_read import TomlError, toml_tables
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
@@ -41,8 +41,6 @@ from flexspline.pipeline.diagnosis.model.shape_check import fault_of
 
 FORMAT = 1
 """Of the file; it grows when a key changes its meaning."""
-LARGEST_BYTES = 1_000_000
-"""A model takes 5 kB; a file beyond this is some other file."""
 
 
 @dataclass(frozen=True)
@@ -186,7 +184,7 @@ def _bend(table: Mapping[str, Any], refuse: Refuse) -> Bend:
 
 def _toml(path: Path) -> dict[str, Any]:
     try:
-        return toml_tables(read_input(path, LARGEST_BYTES, "an extended model"))
+        return toml_tables(read_input(path, LARGEST_TOML_BYTES, "an extended model"))
     except (InputFileError, TomlError) as error:
         raise ModelFileError(path, str(error)) from None
 

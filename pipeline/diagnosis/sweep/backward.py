@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC, Noise
 from flexspline.pipeline.diagnosis.structure import BackwardLoop
-from flexspline.pipeline.diagnosis.sweep.loads import Loads
+from flexspline.pipeline.diagnosis.sweep.loads import HalfCycles
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.torque_delay import torque_delay_s
@@ -67,7 +67,7 @@ def backward_loop(
     history: History, angle_arcsec: np.ndarray, band_Nm: float, noise: Noise
 ) -> BackwardLoop | None:
     """The same of an angle (n,); the gap is crossed within ± `band_Nm`, whose rows decide nothing."""
-    loads = Loads.of(history, band_Nm)
+    loads = HalfCycles.of(history, band_Nm)
     if not len(loads):
         return None
     noise = _as_repeated(loads, angle_arcsec, noise)
@@ -83,7 +83,7 @@ def backward_loop(
     return BackwardLoop(*found, quickest, delay, grows, unrecorded)
 
 
-def _grow(loads: Loads, angle_arcsec: np.ndarray) -> bool | None:
+def _grow(loads: HalfCycles, angle_arcsec: np.ndarray) -> bool | None:
     """Whether backward loops are the wider the quicker; None where rates do not differ."""
     if loads.rates is None:
         return None
@@ -92,7 +92,7 @@ def _grow(loads: Loads, angle_arcsec: np.ndarray) -> bool | None:
     return bool(with_rate / (at_rest + with_rate) > RATE_SHARE)
 
 
-def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
+def _as_repeated(loads: HalfCycles, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
     """The noise, lower where loads of one kind have widths more alike than it allows.
 
     Local polynomials take the gap's step for noise where a late reading moves it out of the crossing; it is
@@ -112,7 +112,9 @@ def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
     return replace(noise, white=share * noise.white, coloured=share * noise.coloured)
 
 
-def _backward(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> tuple[float, int] | None:
+def _backward(
+    loads: HalfCycles, angle_arcsec: np.ndarray, noise: Noise
+) -> tuple[float, int] | None:
     """By how much these loads run backwards [arcsec], and how many loops; None where they do not surely."""
     above = loads.side > 0
     loops = int(min(above.sum(), (~above).sum()))

@@ -68,7 +68,7 @@ class RegressorGroup:
 
 
 @dataclass(frozen=True)
-class Regressors:
+class RegressorPool:
     """All M regressors that may join a set: first those of the first group, there owner by owner.
 
     Attributes
@@ -87,7 +87,7 @@ class Regressors:
     against: list[tuple[int, frozenset[str]]]
 
     @staticmethod
-    def of(evidence: GaussianEvidence, allowed: Sequence[int]) -> Regressors:
+    def of(evidence: GaussianEvidence, allowed: Sequence[int]) -> RegressorPool:
         """Of the terms with these numbers."""
         blocks: dict[int, dict[str, list[int]]] = {}
         for i in allowed:
@@ -98,7 +98,7 @@ class Regressors:
         members = [i for group in groups for i in group]
         terms = [evidence.terms[i] for i in members]
         owners = np.array([t.owner for t in terms])
-        return Regressors(
+        return RegressorPool(
             np.array(members, int),
             tuple(RegressorGroup.of(evidence, group) for group in groups),
             np.repeat(np.arange(len(sizes)), sizes),

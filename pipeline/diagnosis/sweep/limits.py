@@ -7,7 +7,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.plausibility import far_slope, slope_beyond
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.shortage import Drowned, Leaping
+from flexspline.pipeline.diagnosis.shortage import Drowned, LeapingAngle
 from flexspline.pipeline.diagnosis.structure import NegativeGap, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leaps import leaps_of
@@ -55,7 +55,7 @@ def slow_noise(explained: ExplainedSweep) -> Unexplained | None:
     return Unexplained("time_s", rms, 0.0, (UnnamedForm("slow_noise"),))
 
 
-def drowned(explained: ExplainedSweep) -> Drowned | Leaping | None:
+def drowned(explained: ExplainedSweep) -> Drowned | LeapingAngle | None:
     """Noise, or leaps that pass for it, that hide everything; None where one reading's is below the twist."""
     prepared = explained.prepared
     noise = explained.identified.search.evidence.noise.std_arcsec
@@ -63,7 +63,7 @@ def drowned(explained: ExplainedSweep) -> Drowned | Leaping | None:
     if noise <= twist:
         return None
     leaps = leaps_of(prepared.sweep.history, prepared.sweep.angle_arcsec)
-    return Drowned(noise, twist) if leaps is None else Leaping(leaps, twist)
+    return Drowned(noise, twist) if leaps is None else LeapingAngle(leaps, twist)
 
 
 def _gap(

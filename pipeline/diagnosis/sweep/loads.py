@@ -19,14 +19,14 @@ ONE_SIZE = 0.05
 
 
 @dataclass(frozen=True)
-class Loads:
-    """`rows` of each load, from where torque leaves the gap's crossing to where it comes back."""
+class HalfCycles:
+    """`rows` of each half-cycle: from where torque leaves the gap's crossing to where it comes back."""
 
     history: History
     rows: tuple[np.ndarray, ...]
 
     @classmethod
-    def of(cls, history: History, band_Nm: float) -> Loads:
+    def of(cls, history: History, band_Nm: float) -> HalfCycles:
         """The gap is crossed within ± `band_Nm`, whose rows are no load's."""
         found = []
         for rows in history.unit_slices:
@@ -75,9 +75,9 @@ class Loads:
         torque = self.history.torque_Nm
         return np.array([_width(torque[own], angle_arcsec[own]) for own in self.rows])
 
-    def only(self, which: np.ndarray) -> Loads:
+    def only(self, which: np.ndarray) -> HalfCycles:
         """Those of a mask (k,)."""
-        return Loads(self.history, tuple(self.rows[i] for i in np.flatnonzero(which)))
+        return HalfCycles(self.history, tuple(self.rows[i] for i in np.flatnonzero(which)))
 
     @cached_property
     def _first(self) -> np.ndarray:

@@ -9,7 +9,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.operators import stops
-from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.corners import TorqueCorner, corners_of
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
@@ -140,7 +140,7 @@ def ringing(rig: FitContext) -> Made:
             yield "torque_rate", UnnamedForm("rings"), np.column_stack([own.real, own.imag])
 
 
-def _rung(history: History, corners: Sequence[Corner], pole: np.ndarray) -> np.ndarray:
+def _rung(history: History, corners: Sequence[TorqueCorner], pole: np.ndarray) -> np.ndarray:
     """(n, m) Σ change·exp(pole·(t − corner)) of the corners so far, for each pole (m,) [1/s]."""
     assert history.time_s is not None
     out = np.zeros((len(history), len(pole)), complex)

@@ -11,7 +11,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
-from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, Regressors
+from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, RegressorPool
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = log(len(known_causes())) + log(7)
@@ -66,7 +66,7 @@ class Search:
 
     def __post_init__(self) -> None:
         allowed = [i for i, term in enumerate(self.evidence.terms) if self.allowed(term)]
-        self._joining = Regressors.of(self.evidence, allowed)
+        self._joining = RegressorPool.of(self.evidence, allowed)
         self._seen: set[frozenset[int]] = set()
         self._owner = [t.owner for t in self.evidence.terms]
 

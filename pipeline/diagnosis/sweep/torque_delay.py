@@ -8,7 +8,7 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.sweep.loads import Loads
+from flexspline.pipeline.diagnosis.sweep.loads import HalfCycles
 
 DIFFERENT = 0.3
 """Of the loads' differences in width that a delay may leave: it then makes nine tenths of their power."""
@@ -24,7 +24,7 @@ OTHER_LOADS_RATIO = 10.0
 
 
 def torque_delay_s(
-    loads: Loads, angle_arcsec: np.ndarray, band_Nm: float
+    loads: HalfCycles, angle_arcsec: np.ndarray, band_Nm: float
 ) -> tuple[float, float] | None:
     """The delay [s] and its deviation, by an angle (n,).
 
@@ -41,7 +41,7 @@ def torque_delay_s(
 
     def widths(delay_s: float) -> np.ndarray:
         early = replace(history, torque_Nm=torque_read_at(history, delay_s))
-        return Loads.of(early, band_Nm).widths(angle_arcsec)
+        return HalfCycles.of(early, band_Nm).widths(angle_arcsec)
 
     was = widths(0.0)
 

@@ -60,7 +60,7 @@ class Apart:
 
 
 @dataclass(frozen=True)
-class GearInputs:
+class GearIdentification:
     """What the middle of the loop says of the gear's inputs.
 
     Attributes
@@ -89,7 +89,7 @@ class GearInputs:
     apart: Apart | None = None
 
 
-def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearInputs | None:
+def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIdentification | None:
     """Of a sweep held against the gear; None of several units, or where a sign of torque is missing.
 
     Raises
@@ -111,7 +111,7 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     each = (fitted(one, chain, curve, nominal, start) for one in inputs.values())
     # an input that moves nothing on this gear has no value
     found = sorted((f for f in each if f.std < inf), key=lambda one: one.chi_square)
-    plain = GearInputs("consistent", rms(off), base, len(off), tuple(found))
+    plain = GearIdentification("consistent", rms(off), base, len(off), tuple(found))
     if _fits(base, len(off)):
         return plain
     if not found:
@@ -138,13 +138,13 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
 
 
 def _of_pairs(
-    plain: GearInputs,
+    plain: GearIdentification,
     inputs: tuple[GearInput, ...],
     chain: Chain,
     curve: CentralCurve,
     analysis: SweepAnalysis,
     start: Equilibrium,
-) -> GearInputs:
+) -> GearIdentification:
     """The pair that fits, and those that fit as well; "unknown" where none does."""
 
     def together(learnt: CentralCurve, of: tuple[GearInput, ...]) -> list[FittedPair]:

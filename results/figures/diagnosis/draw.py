@@ -45,7 +45,7 @@ class DiagnosisFigure:
     caption: str
 
 
-class _Sheet:
+class _FigureList:
     """Figures in their order, and how each is drawn."""
 
     def __init__(self, folder: Path) -> None:
@@ -62,7 +62,7 @@ class _Sheet:
 
 def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[DiagnosisFigure]:
     """Draw every figure that has something to show into `folder`."""
-    sheet = _Sheet(folder)
+    sheet = _FigureList(folder)
     measurement = diagnosis.measurement
     if isinstance(measurement, Sweep):
         shown = seen(diagnosis)
@@ -76,7 +76,7 @@ def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[DiagnosisFigure]:
     return sheet.figures
 
 
-def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
+def _sweep(shown: SweepPictureData, sheet: _FigureList) -> None:
     outcome, gain = shown.diagnosis.outcome, shown.diagnosis.outcome.gain
     sheet.add("measured_and_predicted", lambda path: write_overview(path, shown))
     before = "Residual of the simulation against every channel"
@@ -118,7 +118,7 @@ def residual_words(
     return said
 
 
-def _end_points(analysis: EndPointAnalysis, sheet: _Sheet) -> None:
+def _end_points(analysis: EndPointAnalysis, sheet: _FigureList) -> None:
     sheet.add("envelope", lambda path: write_envelope(path, analysis))
     sheet.add("positions", lambda path: write_positions(path, analysis))
     if len(analysis.hypotheses) > 1:
@@ -126,7 +126,10 @@ def _end_points(analysis: EndPointAnalysis, sheet: _Sheet) -> None:
 
 
 def _specimens(
-    analysis: SpecimenAnalysis, gain: Gain | None, overrides: dict[str, np.ndarray], sheet: _Sheet
+    analysis: SpecimenAnalysis,
+    gain: Gain | None,
+    overrides: dict[str, np.ndarray],
+    sheet: _FigureList,
 ) -> None:
     sheet.add("stiffness", lambda path: write_stiffness(path, analysis))
     if any(np.ptp(v) > 0 for v in overrides.values()):

@@ -11,6 +11,7 @@ import { differences, keep, kept, setAt, state } from "./state.js";
 import { follow } from "./theme.js";
 import { Work } from "./work.js";
 
+const MB = 1e6;
 const JSON_TYPE = "application/json";
 const LOST = "Connection lost. Trying again; the design in this tab is kept.";
 const REFUSED = "The server was started again and does not know this browser yet: open the address that it printed in another tab. The design in this tab is kept.";
@@ -39,7 +40,7 @@ for (const [kind, words, tip] of [
   ["step", "STEP", "Both parts as CAD files"],
   ["report", "Report", "The whole run with the solid model: report.pdf, and report.html to turn"],
 ]) works[kind] = new Work({ kind, words, title: tip, start: startWork, stop: stopWork, done: (note, line) => finished(kind, note, line) });
-const measured = new Measured(document.getElementById("measured"), {
+const measured = new Measured(document.getElementById("measured"), started.largest_bytes.measured / MB, {
   upload: (file) => ask(`measured/${link.tab}`, file, "text/csv"), start: startWork, stop: stopWork, address });
 works.diagnose = measured.work;
 const pins = new Pins({ figures, changed: () => { keep(); figures.draw(); } });
@@ -187,7 +188,8 @@ function reopen(tables) {
 }
 
 function load(file) {
-  if (file.size > 1e6) return say(`${file.name}: ${file.size} bytes; a design file has at most 1 MB`);
+  const largest = started.largest_bytes.design;
+  if (file.size > largest) return say(`${file.name}: ${file.size} bytes; a design file has at most ${largest / MB} MB`);
   open("open", file, "application/toml");
 }
 

@@ -3,8 +3,6 @@
 import { el, pick } from "./dom.js";
 import { Work } from "./work.js";
 
-const LARGEST_MB = 20;
-
 const KINDS = [
   ["Torque sweep", "torque_Nm, angle_arcsec", "unit, cycle, time_s, temperature_C, input_angle_deg",
     "friction, hardening, clearance, drift, wear, creep, lag, errors of position"],
@@ -24,16 +22,16 @@ function guide() {
 }
 
 export class Measured {
-  // upload(file): sends the bytes; start, stop as for any work; address(name): of a file that was made.
-  constructor(root, { upload, start, stop, address }) {
-    Object.assign(this, { root, upload, address });
+  // largestMB: of a file. upload(file): sends the bytes; start, stop as for any work; address(name): of a file that was made.
+  constructor(root, largestMB, { upload, start, stop, address }) {
+    Object.assign(this, { root, largestMB, upload, address });
     this.work = new Work({ kind: "diagnose", words: "Diagnose again", title: "With the design as it stands now",
       start, stop, done: (note) => this.show(note), said: (text) => text.replaceAll("measured.csv", this.file?.name ?? "") });
     this.work.button.hidden = true;
     this.name = el("span", { class: "limit" });
     const zone = el("div", { id: "drop" },
       el("p", {}, "Drop a CSV of measured data here, or ", el("button", { class: "small", onclick: () => pick(".csv,text/csv", (f) => this.take(f)) }, "choose a file")),
-      el("p", { class: "limit" }, `Torque sweep, end points or specimens; at most ${LARGEST_MB} MB. Compared with the design on the left.`),
+      el("p", { class: "limit" }, `Torque sweep, end points or specimens; at most ${largestMB} MB. Compared with the design on the left.`),
       el("p", {}, this.name, " ", this.work.button, " ", this.work.line));
     this.fault = el("p", { class: "fault", role: "alert", hidden: true, id: "measured-fault" });
     this.findings = el("div", { id: "findings" }, guide());
@@ -49,7 +47,7 @@ export class Measured {
 
   async take(file) {
     this.refuse("");
-    if (file.size > LARGEST_MB * 1e6) return this.refuse(`${file.name}: larger than ${LARGEST_MB} MB`);
+    if (file.size > this.largestMB * 1e6) return this.refuse(`${file.name}: larger than ${this.largestMB} MB`);
     try {
       await this.upload(file);
     } catch (error) {

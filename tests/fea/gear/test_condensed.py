@@ -9,12 +9,12 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.contact import lift_off_forces
-from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lift_off import pushing
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE
 from flexspline.fea.axisymmetric.seat import seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.gear.condensed import along, condensed, even
 from flexspline.fea.gear.race import condensed_race, race_outline
 from flexspline.fea.gear.rim import condensed_rim, fine_enough, places_along, triangulated

@@ -15,10 +15,11 @@ from cartesian import FORCES
 from example_files import EXAMPLES
 from scipy.interpolate import griddata
 
+from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.gear.rim import condensed_rim, places_along
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import mesh_surface
-from flexspline.fea.solid.model import RADIAL, TANGENTIAL, Model, Supports
+from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design

@@ -10,7 +10,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.gear.equilibrium import Contacts, EquilibriumError, equilibrium
-from flexspline.fea.gear.kinematics import Mesh
+from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.load import load_design
@@ -27,7 +27,7 @@ def model() -> GearModel:
 
 def test_everything_rigid_turns_through_the_free_angle() -> None:
     """(min g+ + min g−)/(r_p cos α) between a small torque one way and the other."""
-    mesh = Mesh(20.0, 2 / 202, 0.2, 0.003, radians(20), 0.026)
+    mesh = ToothMesh(20.0, 2 / 202, 0.2, 0.003, radians(20), 0.026)
     phi, _ = mesh.stations(200, 128)
     plain, relief = mesh.free_gaps(phi, 0.2), mesh.relief(phi)
     front, back = plain[0] + relief[0], plain[1] + relief[1]

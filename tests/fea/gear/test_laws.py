@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexspline.fea.gear.ball import ball_between_races, point_contact
-from flexspline.fea.gear.kinematics import Mesh
+from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.tooth_pair import clamped, flank_contact, tooth
 from flexspline.fea.types import Elastic
 from flexspline.geometry.circular_spline import DEEPEST
@@ -16,9 +16,9 @@ from flexspline.geometry.circular_spline import DEEPEST
 STEEL = Elastic(206e3, 0.3)
 
 
-def mesh(clearance: float = 0.0, height: float = 0.0) -> Mesh:
+def mesh(clearance: float = 0.0, height: float = 0.0) -> ToothMesh:
     """Module 0.2, 200 and 202 teeth, 20°."""
-    return Mesh(20.0, 2 / 202, 0.2, clearance, radians(20), height)
+    return ToothMesh(20.0, 2 / 202, 0.2, clearance, radians(20), height)
 
 
 def test_a_ball_on_a_plane_is_hertz_s_closed_form() -> None:

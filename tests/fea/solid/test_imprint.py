@@ -9,7 +9,7 @@ import pytest
 from skfem import MeshTet
 from structured import from_cylindrical
 
-from flexspline.fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
+from flexspline.fea.solid.imprint import MesherMesh, smooth_patch_edges, with_patch_edges
 from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
@@ -64,7 +64,7 @@ def test_the_circle_is_in_the_mesh(seed: int, space: MeshingMap) -> None:
     facet_surface = np.where(down, np.where(centre < EDGE, 0, 1), 2)
     before = signed_volumes(points, tets).sum()
 
-    made = with_patch_edges(Meshed(points, tets, faces, facet_surface), RING, space)
+    made = with_patch_edges(MesherMesh(points, tets, faces, facet_surface), RING, space)
     new, more = made.points, made.tets
 
     assert len(more) > len(tets)  # some edges cross in their middle
@@ -104,7 +104,7 @@ def test_a_mesh_that_has_the_circle_stays_as_it_is() -> None:
     points, tets = loose_mesh(0, Cartesian())
     faces = boundary_faces(tets)
     surface = np.where(lower_side(points, faces), 0, 2)
-    once = with_patch_edges(Meshed(points, tets, faces, surface), RING, Cartesian())
+    once = with_patch_edges(MesherMesh(points, tets, faces, surface), RING, Cartesian())
     again = with_patch_edges(once, RING, Cartesian())
     assert (again.points == once.points).all()
     assert (again.tets == once.tets).all()
@@ -123,7 +123,7 @@ def test_an_edge_across_two_circles_is_halved_at_both() -> None:
         *RING[2:],
     ]
     surface = np.where(lower_side(points, faces), 0, 3)
-    made = with_patch_edges(Meshed(points, tets, faces, surface), surfaces, Cartesian())
+    made = with_patch_edges(MesherMesh(points, tets, faces, surface), surfaces, Cartesian())
     assert np.array_equal(np.unique(made.tets), np.arange(len(made.points)))
     assert signed_volumes(made.points, made.tets).min() > 0
     radius = np.hypot(*made.points[made.faces][:, :, :2].transpose(2, 0, 1))

@@ -129,7 +129,7 @@ def test_a_missing_file_and_a_folder(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("limit", "needle"), [("LARGEST_BYTES", "at most 20 bytes"), ("LARGEST_ROWS", "rows")]
+    ("limit", "needle"), [("LARGEST_MEASURED_BYTES", "at most 20 bytes"), ("LARGEST_ROWS", "rows")]
 )
 def test_a_file_far_too_large(
     limit: str, needle: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

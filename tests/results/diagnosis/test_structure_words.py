@@ -10,7 +10,7 @@ from histories import sweep
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.shortage import Leaping, Leaps
+from flexspline.pipeline.diagnosis.shortage import LeapingAngle, Leaps
 from flexspline.pipeline.diagnosis.structure import FormKind, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import nuisance_terms
 from flexspline.pipeline.diagnosis.timeless import ROW, TIME, over_rows
@@ -59,7 +59,7 @@ def test_every_plan_has_words(kind: DoingKind) -> None:
 
 
 def test_a_large_move_is_no_power_of_ten() -> None:
-    leaping = Leaping(Leaps(5, (1286.0, 3381.0), (-8.0, 18.0), 120.0), 1321.0)
+    leaping = LeapingAngle(Leaps(5, (1286.0, 3381.0), (-8.0, 18.0), 120.0), 1321.0)
     said = shortage_words(leaping)
     assert "at −8 to 18 N·m" in said
     assert "by 120 arcsec from row to row" in said

@@ -9,7 +9,7 @@ from flexspline.fea.solid.whole import whole_part
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture
 from flexspline.results.renders.mesh_picture import write_mesh_picture
 from flexspline.results.renders.picture_elements import Seen, magnification, peak_mark
-from flexspline.results.renders.scene import Layer, View, shoot
+from flexspline.results.renders.scene import Actor, View, shoot
 from flexspline.results.renders.stress_picture import write_torque_stress
 from flexspline.results.renders.surface import opening, skin
 
@@ -73,8 +73,8 @@ def test_a_point_s_pixel_is_where_the_renderer_draws_it():
     at = np.array([3.0, -2.0, 4.0])
     box = pv.Box((-6, 6, -6, 6, -1, 7))
     layers = [
-        Layer(box, {"color": "white", "lighting": False}),
-        Layer(pv.Sphere(radius=0.3, center=at), {"color": "red", "lighting": False}, pull=30.0),
+        Actor(box, {"color": "white", "lighting": False}),
+        Actor(pv.Sphere(radius=0.3, center=at), {"color": "red", "lighting": False}, pull=30.0),
     ]
     shot = shoot(layers, View(35.0, 25.0), (400, 300))
     red = (shot.image[..., 0] > 200) & (shot.image[..., 1] < 60)

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from flexspline.pipeline.study import stiffness_slopes
 from flexspline.results.cli import app
 from flexspline.results.file_names import STUDY as STUDY_FILES
+from flexspline.results.study import answer
 
 DESIGN = EXAMPLES / "xb1-40.toml"
 STUDY = """
@@ -54,12 +55,9 @@ def nothing_drawn(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     """From its call on, studies end with their tables."""
 
     def begin() -> None:
-        for place in (
-            "results.study.figures.write_figures",
-            "results.study.report.write_study_reports",
-        ):
-            monkeypatch.setattr(f"flexspline.{place}", lambda *_: [])
-        monkeypatch.setattr("flexspline.pipeline.study.best.best_field", lambda *_: None)
+        for name in ("write_figures", "write_study_reports"):
+            monkeypatch.setattr(answer, name, lambda *_: [])
+        monkeypatch.setattr(answer, "best_field", lambda *_: None)
 
     return begin
 

@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.structure import BackwardLoop
 from flexspline.pipeline.diagnosis.sweep.backward import backward_loop
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.loads import Loads
+from flexspline.pipeline.diagnosis.sweep.loads import HalfCycles
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.structure_words import structure_words
 
@@ -217,7 +217,7 @@ def test_units_measured_in_turns_have_each_its_own_loads() -> None:
     apart = np.repeat(np.arange(len(history)), 3)
     unit = np.tile(np.arange(3), len(history))
     of_three = replace(history.rows(apart), unit=unit)
-    alone, each = Loads.of(history, 0.1), Loads.of(of_three, 0.1)
+    alone, each = HalfCycles.of(history, 0.1), HalfCycles.of(of_three, 0.1)
     assert len(alone) > 0
     assert [(of_three.unit[rows[0]], len(rows)) for rows in each.rows] == [
         (u, len(rows)) for u in range(3) for rows in alone.rows

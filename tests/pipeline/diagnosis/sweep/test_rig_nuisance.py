@@ -14,7 +14,7 @@ from read_sweep import as_read
 from scipy.signal import lsim, lti
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
-from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.corners import TorqueCorner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
@@ -119,7 +119,7 @@ def test_a_ring_after_a_corner_is_among_the_columns() -> None:
         float(np.linalg.norm(rung - p @ np.linalg.lstsq(p, rung, rcond=None)[0])) for p in pairs
     )
     assert left < 1e-9 * np.linalg.norm(rung)
-    assert isinstance(corners[0], Corner)
+    assert isinstance(corners[0], TorqueCorner)
 
 
 def test_a_lock_that_follows_beyond_its_capacity_is_among_the_columns() -> None:

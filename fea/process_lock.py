@@ -1,4 +1,4 @@
-"""Turns that are taken one after the other, by threads and by the copies that a process makes of itself."""
+"""Locks that threads, and the copies that a process makes of itself, hold one after the other."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 from threading import RLock
 
 _FOLDERS: list[Path] = []
-"""The last one is shared with copies of this process, with turns by locks on places of one file."""
+"""The last one is shared with copies of this process, whose locks are on places of one file."""
 
 
 @contextmanager
-def shared_turns() -> Iterator[None]:
-    """While open, turns are shared with copies of this process that are made meanwhile, and so is a folder.
+def shared_locks() -> Iterator[None]:
+    """While open, locks are shared with copies of this process that are made meanwhile, and so is a folder.
 
-    By locks on places of a file in memory, which the system takes from a process that ends.
+    They are on places of a file in memory; the system takes them from a process that ends.
 
     Raises
     ------
@@ -36,17 +36,17 @@ def shared_turns() -> Iterator[None]:
 
 
 def shared_folder() -> Path | None:
-    """Where copies of this process find what one of them made; None where turns are not shared."""
+    """Where copies of this process find what one of them made; None where locks are not shared."""
     return _FOLDERS[-1] if _FOLDERS else None
 
 
 @cache
 def _file() -> int:
-    """Descriptor of the file, which stays open: closing it would take every turn of this process."""
-    return os.memfd_create("turns")  # of Linux, as copies of processes are
+    """Descriptor of the file, which stays open: closing it would end every lock of this process."""
+    return os.memfd_create("locks")  # of Linux, as copies of processes are
 
 
-class Turn(AbstractContextManager[None]):
+class ProcessLock(AbstractContextManager[None]):
     """Of one thread and one process at a time, which may take it again within. `place`: its own, from 0."""
 
     def __init__(self, place: int) -> None:
