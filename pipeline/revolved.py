@@ -115,13 +115,14 @@ def contact(part: Part, relative_width: float) -> Stiffness:
 
 def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
     """Of a flexspline between its two bodies; of a shaft without its holes, then no theorem."""
-    unit = of_1_GPa(part)
+
+    def solved(body: Part) -> Stiffness:
+        return solve(of_1_GPa(body)).times(body.material.youngs_modulus_GPa)
+
     if part.name == "flexspline" and part.bolts is not None:
-        found = enclosed(unit, solve)
-    else:
-        found = solve(unit.without_holes())
-        found = replace(found, guaranteed=found.guaranteed and part.is_revolved)
-    return found.times(part.material.youngs_modulus_GPa)
+        return enclosed(part, solved)
+    found = solved(part.without_holes())
+    return replace(found, guaranteed=found.guaranteed and part.is_revolved)
 
 
 def of_1_GPa(part: Part) -> Part:
