@@ -21,7 +21,6 @@ from flexspline.pipeline.study.local_workers import LocalWorkers
 from flexspline.pipeline.study.run import run_study, trial_store_of
 from flexspline.pipeline.study.verify import solid_answer
 
-
 K_ABOUT = {"torsion": 31_300.0, "lobes": 26_800.0}
 """Of the example cup [N·m/rad]."""
 
@@ -40,9 +39,13 @@ def fails(*given: object, **named: object) -> None:
 def test_it_is_no_missing_figure(solve: Solve) -> None:
     """Neither of K_b, whose bounds are theorems, nor of a case of the rim."""
     task = Task(load_design(EXAMPLES / "xb1-40.toml").tables, {WALL: 0.42}, (solve,))
-    with pytest.raises(NestingError, match=f"design with {WALL} = 0.42: .* please report") as caught:
+    with pytest.raises(
+        NestingError, match=f"design with {WALL} = 0.42: .* please report"
+    ) as caught:
         evaluate(task)
-    assert 0.7 < caught.value.softer_Nm_per_rad / K_ABOUT[solve] < 1.5  # the part's, not that of 1 GPa
+    assert (
+        0.7 < caught.value.softer_Nm_per_rad / K_ABOUT[solve] < 1.5
+    )  # the part's, not that of 1 GPa
 
 
 @pytest.mark.usefixtures("swapped")
