@@ -55,18 +55,14 @@ class Drawing:
         return drawing_key(self.name, self.inputs)
 
 
-def of_field(
-    context: AnalysisContext, name: str, field: SolidField
-) -> Iterator[tuple[Drawing, ...]]:
-    """What shows a field of `RunResult.fields`: a part's mesh; its stress, with that as a view."""
+def of_field(context: AnalysisContext, name: str, field: SolidField) -> Iterator[Drawing]:
+    """What shows a field of `RunResult.fields`: a part's mesh, its stress, and that as a view."""
     turning = {"turning": TURNING}
     if name == ELLIPSE:
         w0 = context.design.w0_mm
         inputs: dict[str, Any] = {**context.part("flexspline").torsion_key, "w0_mm": w0}
-        yield (
-            Drawing(name, "part", inputs, write_ellipse_picture, (field, w0)),
-            Drawing(name, "view", turning | inputs, write_turning_ellipse, (field, w0)),
-        )
+        yield Drawing(name, "part", inputs, write_ellipse_picture, (field, w0))
+        yield Drawing(name, "view", turning | inputs, write_turning_ellipse, (field, w0))
         return
     part = next(part for part in TITLES if name == f"{part}_torque")
     title, torque, solved = (
@@ -76,13 +72,11 @@ def of_field(
     )
     if field.left_out:
         title += f" without {field.left_out}"
-    yield (Drawing(f"{part}_mesh", "part", solved, write_mesh_picture, (field.mesh, title)),)
+    yield Drawing(f"{part}_mesh", "part", solved, write_mesh_picture, (field.mesh, title))
     inputs = {**solved, "torque_Nm": torque}
     shown = field, title, torque
-    yield (
-        Drawing(name, "part", inputs, write_torque_stress, shown),
-        Drawing(name, "view", turning | inputs, write_turning_torque_stress, shown),
-    )
+    yield Drawing(name, "part", inputs, write_torque_stress, shown)
+    yield Drawing(name, "view", turning | inputs, write_turning_torque_stress, shown)
 
 
 def small(png: bytes) -> Drawing:

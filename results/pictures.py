@@ -1,17 +1,17 @@
 """All pictures of a run, drawn while it goes on, once for the same content, and kept.
 
-Two processes draw (`results.renders.process`): a solved part as soon as it is there, the charts in the end.
+Two processes draw (`results.renders.process`): one a solved part as soon as it is there; one the charts in
+the end, without VTK.
 What cannot be drawn is missing and everything else comes; it is not kept, so the next run tries again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from queue import SimpleQueue
 
 from flexspline.fea.types import SolidField
 from flexspline.pipeline.analysis import RunResult
@@ -24,11 +24,10 @@ from flexspline.results.renders.scene import load
 
 STAGE = "picture"
 """Of the cache."""
-PROCESSES = 2
-"""That draw at once, the second from when there are pictures for both. A run of the example cup on two cores:
-12.3 s with two, 14.0 with one."""
 NOTED = {"part": "picture", "view": "3-D view"}
 """Kinds of drawings that take long enough to be told."""
+WITHOUT_VTK = ("chart", "small")
+"""Kinds of drawings that the second process makes."""
 
 
 @dataclass(frozen=True)
@@ -57,47 +56,51 @@ class RunPictures:
         return tuple(f"not drawn: {', '.join(n)}: {reason}" for reason, n in by_reason.items())
 
 
+@dataclass(frozen=True)
+class _Line:
+    """A process that draws one thing after the other, and the thread that waits for it."""
+
+    process: DrawingProcess
+    thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1))
+
+    def end(self) -> None:
+        self.process.__exit__()  # first: the thread then comes to its end
+        self.thread.shutdown(cancel_futures=True)
+
+
 class RunDrawings:
     """Draws a run's pictures while it goes on; a context that ends the drawing."""
 
     def __init__(self, context: AnalysisContext) -> None:
         self.context = context
-        given_up: dict[str, str] = {}  # by all
-        self._processes = [DrawingProcess(gave_up=given_up) for _ in range(PROCESSES)]
-        self._idle: SimpleQueue[DrawingProcess] = SimpleQueue()
-        for process in self._processes:
-            self._idle.put(process)
-        self._threads = ThreadPoolExecutor(PROCESSES)
-        self._asked: list[tuple[Sequence[Drawing], Future[list[bytes | NotDrawnError]]]] = []
-        self._small: dict[str, bytes] = {}
+        given_up: dict[str, str] = {}  # by both
+        self._of_parts, self._of_charts = (
+            _Line(DrawingProcess(gave_up=given_up)) for _ in range(2)
+        )
+        self._asked: list[tuple[Drawing, Future[bytes]]] = []
+        self._small: dict[str, Future[bytes]] = {}
 
     def __enter__(self) -> RunDrawings:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for process in self._processes:  # first: the threads then come to their end
-            process.__exit__()
-        self._threads.shutdown(cancel_futures=True)
+        for line in (self._of_parts, self._of_charts):
+            line.end()
 
     def prepare(self) -> None:
         """Load what draws parts, in its own process, while they are solved; nothing where all is drawn."""
         part = self.context.part("flexspline")
         if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
-            self._threads.submit(self._load)
+            self._of_parts.thread.submit(self._of_parts.process.draw, load)
 
     def add_field(self, name: str, field: SolidField) -> None:
-        """Begin to draw one of `RunResult.fields`; a picture and its view by the same process."""
-        for drawings in of_field(self.context, name, field):
-            self._begin(drawings)
+        """Begin to draw one of `RunResult.fields`."""
+        self.add(of_field(self.context, name, field))
 
     def add(self, drawings: Iterable[Drawing]) -> None:
-        """Begin to draw these, in this order, when what was asked before has begun."""
+        """Begin to draw these, in this order, after what was asked before; charts beside all else."""
         for drawing in drawings:
-            self._begin([drawing])
-
-    def _begin(self, drawings: Sequence[Drawing]) -> None:
-        """Those that one process draws, one after the other."""
-        self._asked.append((drawings, self._threads.submit(self._all_drawn, drawings)))
+            self._asked.append((drawing, self._begin(drawing)))
 
     def kept_in(self, folder: Path) -> RunPictures:
         """Wait for all, and write the pictures.
@@ -107,44 +110,31 @@ class RunDrawings:
         paths: dict[str, Path] = {}
         views: dict[str, bytes] = {}
         missing: dict[str, str] = {}
-        for drawings, asked in self._asked:
-            for drawing, made in zip(drawings, asked.result(), strict=True):
-                name, path = drawing.name, folder / f"{drawing.name}.png"
-                is_view = drawing.kind == "view"
-                if is_view and name not in paths:
-                    continue  # the picture stands where scripts do not run
-                if isinstance(made, NotDrawnError):
-                    missing[f"3-D view {name}" if is_view else name] = str(made)
-                    if not is_view:
-                        path.unlink(missing_ok=True)
-                elif is_view:
-                    views[name] = made
+        for drawing, made in self._asked:
+            name, path = drawing.name, folder / f"{drawing.name}.png"
+            if drawing.kind == "view" and name not in paths:
+                continue  # the picture stands where scripts do not run
+            try:
+                if drawing.kind == "view":
+                    views[name] = made.result()
                 else:
-                    write_bytes(path, made)
+                    write_bytes(path, made.result())
                     paths[name] = path
-        return RunPictures(paths, self._small, views, missing)
+            except NotDrawnError as error:
+                if drawing.kind == "view":
+                    missing[f"3-D view {name}"] = str(error)
+                else:
+                    missing[name] = str(error)
+                    path.unlink(missing_ok=True)
+        smaller = {}
+        for name, made in self._small.items():
+            with suppress(NotDrawnError):  # pages take the PNG
+                smaller[name] = made.result()
+        return RunPictures(paths, smaller, views, missing)
 
-    @contextmanager
-    def _process(self) -> Iterator[DrawingProcess]:
-        process = self._idle.get()  # there is one for each thread
-        try:
-            yield process
-        finally:
-            self._idle.put(process)
-
-    def _load(self) -> None:
-        with self._process() as process:
-            process.draw(load)
-
-    def _all_drawn(self, drawings: Sequence[Drawing]) -> list[bytes | NotDrawnError]:
-        made: list[bytes | NotDrawnError] = []
-        with self._process() as process:
-            for drawing in drawings:
-                try:
-                    made.append(self._drawn(process, drawing))
-                except NotDrawnError as error:
-                    made.append(error)
-        return made
+    def _begin(self, drawing: Drawing) -> Future[bytes]:
+        line = self._of_charts if drawing.kind in WITHOUT_VTK else self._of_parts
+        return line.thread.submit(self._drawn, line.process, drawing)
 
     def _drawn(self, process: DrawingProcess, drawing: Drawing) -> bytes:
         def make() -> bytes:
@@ -154,7 +144,7 @@ class RunDrawings:
 
         made, _ = self.context.cache.get(STAGE, drawing.key, make)
         if drawing.kind == "part":
-            self._small[drawing.name] = self._drawn(process, small(made))
+            self._small[drawing.name] = self._begin(small(made))
         return made
 
 

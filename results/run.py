@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from flexspline.pipeline.analysis import RunResult, run
 from flexspline.pipeline.diagnosis.model.extended_backlash import (
     ExtendedBacklash,
     extended_backlash,
 )
-from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.second_process import second_process
 from flexspline.results.gear_words import gear_notes
 from flexspline.results.job import Job, kept, put, tell, tell_all
@@ -16,6 +17,9 @@ from flexspline.results.records import Record, extended_record, run_record
 from flexspline.results.report.build import write_run_reports
 from flexspline.results.report.content import ExtendedSum
 from flexspline.results.warned import solved_warnings
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 
 
 def run_answer(job: Job, measured: ModelFile | None, as_json: bool) -> Record:

@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections import deque
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
@@ -179,16 +180,17 @@ def serve() -> None:
         print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
 
 
-_last: tuple[bytes, tuple[Any, ...]] = b"", ()
-"""What was drawn last, packed and unpacked."""
+_known: deque[tuple[bytes, tuple[Any, ...]]] = deque(maxlen=2)
+"""What was drawn last, packed and unpacked: a field, and its picture as WebP, before its 3-D view."""
 
 
 def _arguments(content: bytes) -> tuple[Any, ...]:
-    """The very objects of the last time where they are asked for again (`results.renders.remembered`)."""
-    global _last
-    if content != _last[0]:
-        _last = content, unpacked(content)
-    return _last[1]
+    """The very objects of before where they are asked for again (`results.renders.remembered`)."""
+    for packed_before, arguments in _known:
+        if packed_before == content:
+            return arguments
+    _known.append((content, unpacked(content)))
+    return _known[-1][1]
 
 
 def _drawn(function: str, asked: str, made: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -97,7 +97,18 @@ def _pt(pixels: float) -> float:
 
 
 def _image(figure: Figure, shot: Shot, at: tuple[int, int]) -> None:
-    figure.figimage(shot.image, *at, origin="upper", zorder=-1)  # below the mark's axes
+    """Pixel by pixel, below all else; `figimage` would resample it."""
+    from matplotlib.artist import Artist
+
+    rows = np.flipud(np.dstack([shot.image, np.full(shot.image.shape[:2], 255, np.uint8)]))
+
+    class Pixels(Artist):
+        def draw(self, renderer: Any) -> None:
+            context = renderer.new_gc()
+            renderer.draw_image(context, *at, rows)
+            context.restore()
+
+    figure.add_artist(Pixels()).set_zorder(-1)
 
 
 def _say(

@@ -14,6 +14,10 @@ def array(path, values):
     path.write_bytes(values.tobytes())
 
 
+def whose(path, values):
+    path.write_text(str(id(values)))
+
+
 def crashing(path, noted):
     with open(noted, "a", encoding="utf-8") as calls:
         calls.write("called\n")

@@ -29,6 +29,16 @@ def test_what_is_written_comes_back_and_arrays_keep_their_bits() -> None:
         assert process.draw(failing_drawings.array, values) == values.tobytes()
 
 
+def test_a_view_is_drawn_of_the_arrays_of_its_picture() -> None:
+    """And of no others: what was found for them serves again (`results.renders.remembered`)."""
+    values = np.arange(3.0)
+    with DrawingProcess() as process:
+        first = process.draw(failing_drawings.whose, values)
+        process.draw(failing_drawings.good, "the picture, smaller")
+        assert process.draw(failing_drawings.whose, values) == first
+        assert process.draw(failing_drawings.whose, values + 1) != first
+
+
 def test_a_crash_is_one_line_and_other_pictures_still_come(tmp_path: Path) -> None:
     noted = tmp_path / "calls"
     with DrawingProcess() as process:
