@@ -21,6 +21,7 @@ class Job:
     """What the command line asks for; `edge` is the mesh size [mm] along the patch edges."""
 
     step: str
+    load: str
     sector: float
     order: int
     maxh: float
@@ -32,6 +33,7 @@ class Job:
 def job() -> Job:
     parser = argparse.ArgumentParser()
     parser.add_argument("step")
+    parser.add_argument("--load", required=True)
     for name in ("sector", "maxh", "edge", "grading"):
         parser.add_argument(f"--{name}", type=float, required=True)
     parser.add_argument("--order", type=int, required=True)
@@ -40,22 +42,33 @@ def job() -> Job:
 
 
 def meshed(j: Job) -> Any:
-    """Netgen's mesh, boundaries named mount, mesh, start, end or free."""
+    """Netgen's mesh, boundaries named mount, mesh, seat, start, end or free."""
     shape = OCCGeometry(j.step).shape
-    p = j.patches
     for face in shape.faces:
         face.name = _patch(face, j)
-    corners = [
-        (p["boss_radius"], 0.0),
-        (p["boss_radius"], p["diaphragm"]),
-        (p["ring_radius"], p["ring_z"][0]),
-    ]
+    circles = _singular(j)
     for edge in shape.edges:
-        # circles where the torsional stress is singular: rim of the mount, inside corner, start of
-        # the ring; at the open rim held and free surface meet at 90°, which is not
-        if any(all(_at(end, r, z) for end in (edge.start, edge.end)) for r, z in corners):
+        if any(all(_at(end, r, z) for end in (edge.start, edge.end)) for r, z in circles):
             edge.maxh = j.edge
     return OCCGeometry(shape).GenerateMesh(maxh=j.maxh, grading=j.grading)
+
+
+def _singular(j: Job) -> list[tuple[float, float]]:
+    """Circles (r, z) where the stress that decides is singular; at the open rim held and free surface meet at
+    90°, where it is not."""
+    p = j.patches
+    start = p["ring_z"][0]
+    torsion = [
+        (p["boss_radius"], 0.0),
+        (p["boss_radius"], p["diaphragm"]),
+        (p["ring_radius"], start),
+    ]
+    if j.load == "uniform":
+        return torsion
+    if j.load == "ellipse":  # its peak lies at the foot of the shoulder, far from the boss
+        foot = start - (p["ring_radius"] - p["wall_radius"])
+        return [(p["seat_radius"], start), (p["ring_radius"], start), (p["wall_radius"], foot)]
+    return [*torsion, (p["seat_radius"], start)]
 
 
 def _at(point: Any, r: float, z: float) -> bool:
@@ -69,9 +82,10 @@ def _patch(face: Any, j: Job) -> str:
     if max(map(abs, z)) < NEAR and max(radii) < p["boss_radius"] + NEAR:
         return "mount"
     low, high = p["ring_z"]
-    outer = min(radii) > p["ring_radius"] - NEAR
-    if outer and abs(min(z) - low) < NEAR and abs(max(z) - high) < NEAR:
-        return "mesh"
+    if abs(min(z) - low) < NEAR and abs(max(z) - high) < NEAR:
+        for name, radius in (("mesh", p["ring_radius"]), ("seat", p["seat_radius"])):
+            if all(abs(r - radius) < NEAR for r in radii):
+                return name
     # all corners of a hole's half wall lie in the plane too, its centre does not
     middle = (face.center.x, face.center.y, face.center.z)
     for name, degrees in (("start", 0.0), ("end", j.sector)):
@@ -83,11 +97,15 @@ def _patch(face: Any, j: Job) -> str:
 
 
 def expected_areas(j: Job) -> dict[str, float]:
-    """Areas of the driven and the held patch on the sector [mm²]: a wrong face would show."""
+    """Areas of the patches on the sector [mm²]: a wrong face would show."""
     p = j.patches
     share = j.sector / 360
     low, high = p["ring_z"]
-    ring = 2 * math.pi * p["ring_radius"] * (high - low)
+    around = share * 2 * math.pi * (high - low)
     mount = math.pi * (p["boss_radius"] ** 2 - p["bore_radius"] ** 2)
     mount -= p["holes"] * math.pi * p["hole_radius"] ** 2
-    return {"mesh": share * ring, "mount": share * mount}
+    return {
+        "mesh": around * p["ring_radius"],
+        "seat": around * p["seat_radius"],
+        "mount": share * mount,
+    }

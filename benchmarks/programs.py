@@ -9,10 +9,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from cases import WEDGE_DEG, Case
+from cases import QUARTER_DEG, WEDGE_DEG, Case
 from measure import run
 
 HERE = Path(__file__).parent
+COMMAND = str(Path(sys.executable).with_name("flexspline"))
 SHAFT_GIVEN = "1e5"
 """With K_e given, `flexspline backlash` solves for K_b alone."""
 
@@ -32,7 +33,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Peer:
-    """A peer program on the whole cup or on a wedge; `python` has NGSolve."""
+    """A peer program on the whole cup or on a sector; `python` has NGSolve."""
 
     name: str
     script: str
@@ -41,6 +42,7 @@ class Peer:
 
     def run(self, case: Case, setting: Setting, steps: Path) -> dict[str, Any]:
         options = asdict(setting) | {"sector": self.sector, "patches": case.patches()}
+        options["load"] = case.load
         words = [str(w) for k, v in options.items() for w in (f"--{k}", v)]
         step = case.step(steps, self.sector)
         with tempfile.TemporaryDirectory() as folder:
@@ -48,7 +50,10 @@ class Peer:
             return run(command, Path(folder))
 
 
-def peers(python: str) -> tuple[Peer, ...]:
+def peers(python: str, case: Case) -> tuple[Peer, ...]:
+    """Those that solve the case: lobes and ellipse have the symmetry of a quarter."""
+    if case.load != "uniform":
+        return (Peer("NGSolve, quarter", "peer_ngsolve.py", QUARTER_DEG, python),)
     return (
         Peer("NGSolve, wedge", "peer_ngsolve.py", WEDGE_DEG, python),
         Peer("NGSolve, full", "peer_ngsolve.py", 360.0, python),
@@ -57,25 +62,28 @@ def peers(python: str) -> tuple[Peer, ...]:
 
 
 def ours(case: Case, tolerance_pct: float) -> dict[str, Any]:
-    """`flexspline backlash` with K_e given and an empty cache."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "design.toml").write_text(case.design_text(tolerance_pct), encoding="utf-8")
-        command = [str(Path(sys.executable).with_name("flexspline")), "backlash", "design.toml"]
-        command += ["--Ke", SHAFT_GIVEN, "--json", "--out", "out"]
-        found = run(command, folder, {"FLEXSPLINE_CACHE": str(folder / "cache")})
+    """`flexspline backlash` with K_e given; a load case of the rim alone by the same functions."""
+    if case.load != "uniform":
+        script = str(HERE / "rim_alone.py")
+        return _solved([sys.executable, script, "design.toml", case.load], case, tolerance_pct)
+    options = ["--Ke", SHAFT_GIVEN, "--json", "--out", "out"]
+    found = _solved([COMMAND, "backlash", "design.toml", *options], case, tolerance_pct)
     return found if "failed" in found else _figures(found)
 
 
 def stiffness_command(case: Case, tolerance_pct: float) -> dict[str, Any]:
-    """`flexspline stiffness`: every load case of both parts, with an empty cache."""
+    """`flexspline stiffness`: every load case of both parts."""
+    command = [COMMAND, "stiffness", "design.toml", "--json", "--out", "out"]
+    found = _solved(command, case, tolerance_pct)
+    return found if "failed" in found else _figures(found)
+
+
+def _solved(command: list[str], case: Case, tolerance_pct: float) -> dict[str, Any]:
+    """A command of ours run beside its design.toml, with an empty cache."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "design.toml").write_text(case.design_text(tolerance_pct), encoding="utf-8")
-        command = [str(Path(sys.executable).with_name("flexspline")), "stiffness", "design.toml"]
-        command += ["--json", "--out", "out"]
-        found = run(command, folder, {"FLEXSPLINE_CACHE": str(folder / "cache")})
-    return found if "failed" in found else _figures(found)
+        return run(command, folder, {"FLEXSPLINE_CACHE": str(folder / "cache")})
 
 
 def _figures(found: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,7 +4,8 @@
     python benchmarks/run.py [--peers-python PYTHON] [--resume] [--rounds 5]
 
 `--peers-python` names an interpreter that has NGSolve, if this one has not. `--resume` keeps what the
-last results.json holds of references, of the search for the peers' settings, and of the growth.
+last results.json holds of references, of the search for the peers' settings, and of the growth, and looks for
+what is not in it.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from cases import ACCURACIES_PCT, CASES, ROOT
+from cases import CASES, LOADS, ROOT, Case
 from measure import cpu, repeated
 from page import page
-from programs import Peer, Setting, ours, peers, stiffness_command
+from programs import Setting, ours, peers, stiffness_command
 from references import references
 from scaling import growth
 from tune import settings, tuned
@@ -41,18 +42,18 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=RUNS)
     options = parser.parse_args()
     old = json.loads(RESULTS.read_text(encoding="utf-8")) if options.resume else {}
-    everybody = peers(options.peers_python)
+    python = options.peers_python
     kept = {k: old[k] for k in ("references", "tuning", "scaling", "load_at_scaling") if k in old}
-    result: dict[str, Any] = {"machine": machine(options.peers_python), "tuning": {}} | kept
+    result: dict[str, Any] = {"machine": machine(python), "references": {}, "tuning": {}} | kept
     with tempfile.TemporaryDirectory() as name:
         steps = Path(name)
-        if "references" not in result:
-            result["references"] = references(everybody[0], steps)
-            save(result)
-        search(everybody, result, steps)
+        for load in LOADS:
+            if Case(0, load).name not in result["references"]:
+                result["references"] |= references(load, python, steps)
+                save(result)
+        search(python, result, steps)
         result["rounds"], result["load_at_timing"] = options.rounds, os.getloadavg()
-        known = {key: settings(tried) for key, tried in result["tuning"].items()}
-        result["times"] = timed(everybody, known, result, steps, options.rounds)
+        result["times"] = timed(python, result, steps, options.rounds)
         save(result)
     if "scaling" not in result:
         result["load_at_scaling"] = [round(x, 2) for x in os.getloadavg()]
@@ -61,24 +62,24 @@ def main() -> None:
     (ROOT / "docs" / "benchmarks.md").write_text(page(result), encoding="utf-8")
 
 
-def search(everybody: tuple[Peer, ...], result: dict[str, Any], steps: Path) -> None:
-    """Peers' settings on the first cup from scratch, on the second from the first's."""
-    first, second = (c.name for c in CASES)
+def search(python: str, result: dict[str, Any], steps: Path) -> None:
+    """Peers' settings on the first cup from scratch, on the second from the first's.
+
+    Of a peak on both from scratch: on another mesh its error has another sign as well as another size.
+    """
     for case in CASES:
-        for peer in everybody:
+        for peer in peers(python, case):
             key = f"{case.name}, {peer.name}"
             if key in result["tuning"]:
                 continue
-            K = result["references"][case.name]["K"]
-            known = result["tuning"].get(f"{first}, {peer.name}") if case.name == second else None
-            result["tuning"][key] = tuned(peer, case, K, steps, known)
+            reference = result["references"][case.name][case.figure]
+            first = f"{Case(0, case.load).name}, {peer.name}" if case.figure == "K" else key
+            known = result["tuning"].get(first)
+            result["tuning"][key] = tuned(peer, case, reference, steps, known)
             save(result)
 
 
-def timed(
-    everybody: tuple[Peer, ...], chosen: dict[str, Any], result: dict[str, Any], steps: Path,
-    count: int,
-) -> list[dict[str, Any]]:  # fmt: skip
+def timed(python: str, result: dict[str, Any], steps: Path, count: int) -> list[dict[str, Any]]:
     """Rounds; within a round everybody runs once, so that a slow minute hits all alike."""
     known = result["references"]
     searched = {
@@ -89,18 +90,22 @@ def timed(
     long: dict[tuple, dict[str, Any]] = {}
     jobs: dict[tuple, Any] = {}
     for case in CASES:
-        for accuracy in ACCURACIES_PCT:
+        for accuracy in case.accuracies_pct:
             jobs[case.name, accuracy, "flexspline", ""] = lambda c=case, a=accuracy: ours(c, a)
-            for peer in everybody:
-                for words in chosen[f"{case.name}, {peer.name}"][f"{accuracy:g}"]:
+            for peer in peers(python, case):
+                key = f"{case.name}, {peer.name}"
+                for words in settings(result["tuning"][key], case)[f"{accuracy:g}"]:
                     s = Setting(**words)
-                    before = searched[f"{case.name}, {peer.name}", str(s)]
+                    before = searched[key, str(s)]
                     if before["wall_s"] > LONG_S:
                         long[case.name, accuracy, peer.name, str(s)] = before
                     jobs[case.name, accuracy, peer.name, str(s)] = lambda p=peer, c=case, s=s: (
                         p.run(c, s, steps)
                     )
-        jobs[case.name, 0.5, "flexspline stiffness", ""] = lambda c=case: stiffness_command(c, 0.5)
+        if case.load == "uniform":
+            jobs[case.name, 0.5, "flexspline stiffness", ""] = lambda c=case: stiffness_command(
+                c, 0.5
+            )
     rounds: dict[tuple, list[dict[str, Any]]] = {key: [] for key in jobs}
     for number in range(count):
         for key, job in jobs.items():
@@ -109,13 +114,14 @@ def timed(
                 continue
             rounds[key].append(job())
             print(number + 1, *key, rounds[key][-1], flush=True)
-    found = []
+    found, figure_of = [], {c.name: c.figure for c in CASES}
     for (case, accuracy, program, setting), runs in rounds.items():
         figures = repeated(runs)
         figures.pop("setting", None)  # a run of the search carries it as a table
-        if "K" in figures:
-            figures["error_pct"] = 100 * (figures["K"] / known[case]["K"] - 1)
-            errors = [abs(100 * (r["K"] / known[case]["K"] - 1)) for r in runs]
+        of = figure_of[case]
+        if of in figures:
+            figures["error_pct"] = 100 * (figures[of] / known[case][of] - 1)
+            errors = [abs(100 * (r[of] / known[case][of] - 1)) for r in runs]
             figures["worst_error_pct"] = max(errors)
         found.append(
             {"case": case, "accuracy_pct": accuracy, "program": program, "setting": setting}
