@@ -58,6 +58,25 @@ def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.Monk
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
 
 
+@pytest.mark.parametrize(("about_axis", "tries"), [(True, 2), (False, 7)])
+def test_a_mesh_given_up_midway_says_little_about_the_next(
+    about_axis: bool, tries: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In layers its elements may fall by little at first, and by much later."""
+    asked: list[float] = []
+
+    def given_up(self: PartMeshes, spec: MeshSpec, most_elements: float = inf) -> None:
+        asked.append(spec.grading.near)
+        if most_elements < inf:
+            raise TooManyElementsError(100_000 - len(asked), most_elements)
+
+    monkeypatch.setattr(part_meshes, "goes_about_axis", lambda part: about_axis)
+    monkeypatch.setattr(PartMeshes, "swept", given_up)
+    part = AnalysisContext(DESIGN, Cache(tmp_path), Progress()).part("shaft")
+    PartMeshes(part).coarsened(12_000)
+    assert len(set(asked)) == tries
+
+
 def test_edges_stay_where_longer_ones_leave_as_many_elements(tmp_path: Path) -> None:
     """Holes 2.2 mm apart beside a step of 17 mm ask for 15 000 elements, however long the others are."""
     stepped = DESIGN.changed({
