@@ -203,9 +203,11 @@ class PartMeshes:
         with self.model.context.progress.stage(f"mesh of the {self.model.name}"):
             if self.model.context.cache.has("mesh", self._key(spec)):
                 kept = self.meshed(spec)
-                if kept.kind == "swept" and kept.mesh.elements > most_elements:
+                if kept.kind != ("swept" if goes_about_axis(self.model.part) else "layered"):
+                    return before
+                if kept.mesh.elements > most_elements:
                     raise TooManyElementsError(kept.mesh.elements, most_elements)
-                return spec if kept.kind == "swept" else before
+                return spec
             swept = self.swept(spec, most_elements=most_elements)
         if swept is None:
             return before

@@ -77,6 +77,26 @@ def test_a_mesh_given_up_midway_says_little_about_the_next(
     assert len(set(asked)) == tries
 
 
+def test_a_kept_mesh_in_layers_is_found_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a part of another modulus, say, whose mesh is the same: it is not made with shorter edges."""
+    context = AnalysisContext(DESIGN, Cache(tmp_path), Progress())
+    first = PartMeshes(context.part("shaft"))
+    made = first.layered(first.model.first_spec)
+
+    def swept(self: PartMeshes, spec: MeshSpec, most_elements: float = inf) -> MeshedPart | None:
+        if spec == first.model.first_spec:
+            raise TooManyElementsError(100_000, most_elements)
+        return made
+
+    monkeypatch.setattr(part_meshes, "goes_about_axis", lambda part: False)
+    monkeypatch.setattr(PartMeshes, "swept", swept)
+    found = [PartMeshes(context.part("shaft")).coarsened(12_000) for _ in range(2)]
+    assert found[1] == found[0]
+    assert found[0] == first.model.first_spec.scaled(part_meshes.COARSER_EDGES)
+
+
 def test_edges_stay_where_longer_ones_leave_as_many_elements(tmp_path: Path) -> None:
     """Holes 2.2 mm apart beside a step of 17 mm ask for 15 000 elements, however long the others are."""
     stepped = DESIGN.changed({
