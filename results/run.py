@@ -45,7 +45,8 @@ def run_answer(job: Job, measured: ModelFile | None, as_json: bool) -> Record:
         for line in pictures.warnings:
             tell(f"warning: {line}")
     total = ExtendedSum(name, extended.total_arcsec) if extended is not None else None
-    write_run_reports(job.folder, job.context, result, pictures, total, (job.file,))
+    with job.context.progress.stage("report"):
+        write_run_reports(job.folder, result, pictures, total, (job.file,))
     missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
     return run_record(result, job.wall_s) | added | missing
 

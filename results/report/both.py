@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 from flexspline.results.file_names import REPORT
@@ -16,16 +18,25 @@ def reports_of(
     pictures: Mapping[str, Path],
     views: Mapping[str, bytes] | None = None,
     name: str = REPORT,
+    smaller: Mapping[str, bytes] | None = None,
 ) -> dict[str, bytes]:
-    """Bytes of `name`.pdf and `name`.html by file name; the pictures, PNG files, as they are.
+    """Bytes of `name`.pdf and `name`.html by file name, made at once: typst needs no Python.
 
-    `views` turn in the browser (`results.renders.turntable`), by the names that the figures give.
+    The pictures are PNG files; the page carries those as WebP that `smaller` has. `views` turn in the browser
+    (`results.renders.turntable`), by the names that the figures give.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
-    return {
-        f"{name}.pdf": pdf_of(document, pictures),
-        f"{name}.html": page_of(document, {n: png(path) for n, path in pictures.items()}, views),
-    }
+
+    def page() -> bytes:
+        images = {each: png(path) for each, path in pictures.items()}
+        for each, data in (smaller or {}).items():
+            if each in images:
+                images[each] = replace(images[each], data=data)
+        return page_of(document, images, views)
+
+    with ThreadPoolExecutor(1) as beside:
+        made = beside.submit(page)
+        return {f"{name}.pdf": pdf_of(document, pictures), f"{name}.html": made.result()}

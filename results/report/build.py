@@ -2,74 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from flexspline import __version__
 from flexspline.pipeline.analysis import RunResult
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.two_threads import beside
 from flexspline.results.atomic import write_bytes
-from flexspline.results.file_names import REPORT
 from flexspline.results.pictures import RunPictures
 from flexspline.results.report.attached import Attachment
+from flexspline.results.report.both import reports_of
 from flexspline.results.report.content import ExtendedSum, ReportContent
-from flexspline.results.report.page import page_of, png
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.versions import library_versions
-from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
 
 
 def write_run_reports(
     folder: Path,
-    context: AnalysisContext,
     result: RunResult,
     pictures: RunPictures,
     extended: ExtendedSum | None = None,
     attached: tuple[Attachment, ...] = (),
 ) -> None:
-    """`report.pdf` and `report.html`, at once: typst needs no Python.
+    """`report.pdf` and `report.html` of `flexspline run`.
 
     Raises
     ------
-    ReportError, OSError : as of each.
+    ReportError, OSError
     """
-    told = result, pictures, extended, attached
-
-    def page() -> None:
-        write_run_page(folder / f"{REPORT}.html", *told)
-
-    with context.progress.stage("report"), beside(context.progress, [page]) as rest:
-        write_run_report(folder / f"{REPORT}.pdf", *told)
-        rest()
-
-
-def write_run_report(
-    path: Path,
-    result: RunResult,
-    pictures: RunPictures,
-    extended: ExtendedSum | None = None,
-    attached: tuple[Attachment, ...] = (),
-) -> None:
-    """`report.pdf` of `flexspline run`."""
-    write_report(path, report_content(result, pictures, extended, attached))
-
-
-def write_run_page(
-    path: Path,
-    result: RunResult,
-    pictures: RunPictures,
-    extended: ExtendedSum | None = None,
-    attached: tuple[Attachment, ...] = (),
-) -> None:
-    """`report.html` of `flexspline run`: the same content, with 3-D views, in one file."""
-    content = report_content(result, pictures, extended, attached)
-    images = {}
-    for name, source in content.pictures.items():
-        image = png(source)
-        images[name] = replace(image, data=pictures.small.get(name, image.data))
-    write_bytes(path, page_of(run_document(content), images, pictures.views))
+    document = run_document(report_content(result, pictures, extended, attached))
+    made = reports_of(document, pictures.paths, pictures.views, smaller=pictures.small)
+    for name, data in made.items():
+        write_bytes(folder / name, data)
 
 
 def report_content(
