@@ -205,6 +205,8 @@ class Stiffness:
         estimated.
     shortfall : why the refinement ended before its tolerance was met.
     proven_Nm_per_rad : bounds that are theorems, where those given are narrower estimates; else None.
+    harmonics : shares of 1/K that the load's harmonics 0, 2, 4, … about the axis have, of a body of
+        revolution under a load that varies about it; else ().
     """
 
     K_Nm_per_rad: float
@@ -218,6 +220,7 @@ class Stiffness:
     error_scale: float = 1.0
     shortfall: Shortfall = MET
     proven_Nm_per_rad: tuple[float, float] | None = None
+    harmonics: tuple[float, ...] = ()
 
     @property
     def bounds_Nm_per_rad(self) -> tuple[float, float]:

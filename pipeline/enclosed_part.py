@@ -8,7 +8,7 @@ from math import inf
 
 from flexspline.fea.types import MET, Shortfall, Stiffness
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import TwoBodies, two_bodies
 from flexspline.pipeline.parts import PartModel
 
 BODY_SHARE = 0.3
@@ -47,24 +47,40 @@ def enclosure_of(model: PartModel, solve: PartSolver, expected: float = inf) -> 
     NestingError
     ComputationError : of `solve`.
     """
-    finest_pct = BODY_SHARE * model.context.design.solver.tolerance_pct
-    near = FAR_HALF_WIDTHS * model.tolerance
-    first_pct = finest_pct if expected <= near else max(FIRST_BOUNDS_PCT, finest_pct)
-    found = _enclosed_to(model, solve, first_pct)
-    if finest_pct < first_pct and found.half_width <= near:
-        found = _enclosed_to(model, solve, finest_pct)
+    found = by_two_bodies(model, solve, TwoBodies.enclosure, expected)
     if found.half_width <= model.tolerance:
         return replace(found, shortfall=MET)
     return replace(found, shortfall=found.shortfall or Shortfall(TOO_FAR))
 
 
-def _enclosed_to(model: PartModel, solve: PartSolver, tolerance_pct: float) -> Stiffness:
-    """`enclosed`, with each body solved to its own tolerance."""
+def by_two_bodies(
+    model: PartModel,
+    solve: PartSolver,
+    answer: Callable[[TwoBodies], Stiffness],
+    expected: float = inf,
+    most_pct: float = inf,
+) -> Stiffness:
+    """What `answer` makes of both bodies, each solved as finely as that is near the tolerance.
+
+    `most_pct`: distance of each body's own bounds at most, when they are solved finely. Errors as of `solve`
+    and `answer`; see `enclosure_of`.
+    """
+    finest_pct = min(BODY_SHARE * model.context.design.solver.tolerance_pct, most_pct)
+    near = FAR_HALF_WIDTHS * model.tolerance
+    first_pct = finest_pct if expected <= near else max(FIRST_BOUNDS_PCT, finest_pct)
+    found = answer(_bodies_to(model, solve, first_pct))
+    if finest_pct < first_pct and found.half_width <= near:
+        found = answer(_bodies_to(model, solve, finest_pct))
+    return found
+
+
+def _bodies_to(model: PartModel, solve: PartSolver, tolerance_pct: float) -> TwoBodies:
+    """`two_bodies`, each solved to its own tolerance."""
     design = model.context.design
     asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
     solver = design.solver.model_copy(update=asked)
     context = replace(model.context, design=design.model_copy(update={"solver": solver}))
-    return enclosed(model.part, lambda body: solve(replace(model, context=context, part=body)))
+    return two_bodies(model.part, lambda body: solve(replace(model, context=context, part=body)))
 
 
 def enclosure_if_any(

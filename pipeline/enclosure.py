@@ -39,19 +39,37 @@ OF_HOLES = Names(
 )
 
 
-def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
-    """K_b of a part with bolt holes: from the lower end of its cut body's to the upper of its whole body's.
+@dataclass(frozen=True)
+class TwoBodies:
+    """K_b of the two bodies of revolution around a part with bolt holes, in one load case."""
 
-    `solve` is a load case's solution of a body of revolution. The bounds are theorems where
-    both of its are.
+    cut: Stiffness
+    whole: Stiffness
+
+    def enclosure(self) -> Stiffness:
+        """From the lower end of the cut body's to the upper of the whole body's; theorems where both are.
+
+        Raises
+        ------
+        NestingError
+        """
+        return between(self.cut, self.whole, OF_HOLES)
+
+
+def two_bodies(part: Part, solve: Callable[[Part], Stiffness]) -> TwoBodies:
+    """Of a part with bolt holes; `solve` is a load case's solution of a body of revolution.
 
     Raises
     ------
-    NestingError
     ComputationError : of `solve`.
     """
     bodies = nested_bodies(part)
-    return between(solve(bodies.cut), solve(bodies.whole), OF_HOLES)
+    return TwoBodies(solve(bodies.cut), solve(bodies.whole))
+
+
+def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
+    """`TwoBodies.enclosure` of a part; errors of both."""
+    return two_bodies(part, solve).enclosure()
 
 
 def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:

@@ -161,6 +161,7 @@ class _RevolvedLobes:
             levels=tuple(self.estimate.levels),
             error_scale=self.estimate.scale,
             shortfall=shortfall,
+            harmonics=tuple(each / sum(self.found.energies) for each in self.found.energies),
         )
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:

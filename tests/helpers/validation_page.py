@@ -30,6 +30,7 @@ TOPICS = {
     "Solid models against the two-sided bounds": ("test_solid_against_axisymmetric",),
     "Bolt holes between two bodies of revolution": (
         "test_enclosed_holes",
+        "test_lobes_by_torsion",
         "test_lift_off_against_drawn_holes",
     ),
     "Honesty of the solid model's error estimate": ("test_estimate_honesty",),

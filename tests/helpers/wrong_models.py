@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline import enclosure, solid_torsion
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline import enclosure, load_cases, solid_torsion
 from flexspline.pipeline.enclosure import Names
 
 
@@ -30,3 +31,12 @@ def stiffen_solid_model(monkeypatch: pytest.MonkeyPatch) -> None:
         return replace(found, stiffness=found.stiffness.times(1.05))
 
     monkeypatch.setattr(solid_torsion, "solid_stiffness", off)
+
+
+def without_torsion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """K_b in torsion cannot be found, so it cannot help in a load case of the rim."""
+
+    def fails(*given: object) -> Stiffness:
+        raise ComputationError("no mesh for torsion")
+
+    monkeypatch.setattr(load_cases, "part_stiffness", fails)

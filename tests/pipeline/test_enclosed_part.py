@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
-from wrong_models import stiffen_solid_model
+from wrong_models import stiffen_solid_model, without_torsion
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.errors import NoBetterMeshError
@@ -16,7 +16,7 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases, part_stiffness, solid_lobes, solid_torsion
+from flexspline.pipeline import load_cases, lobes_by_torsion, part_stiffness, solid_lobes, solid_torsion
 from flexspline.pipeline.analysis import stiffnesses, torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
@@ -112,10 +112,18 @@ def test_a_case_without_a_solid_model_is_enclosed(
     assert wide.shortfall.words == TOO_FAR
 
 
-def test_a_wide_enclosure_leaves_it_to_the_solid_model(suite_cache: Path) -> None:
+@pytest.mark.parametrize("by_torsion", [True, False])
+def test_a_wide_enclosure_leaves_it_to_the_solid_model(
+    by_torsion: bool, suite_cache: Path, monkeypatch
+) -> None:
     """K_b and the held rim by tetrahedra, within the enclosure."""
     part = model(WIDE, suite_cache)
-    for found in (part_stiffness.part_stiffness(part), rim_stiffness(part, "lobes")):
+    K_b = part_stiffness.part_stiffness(part)
+    if not by_torsion:
+        without_torsion(monkeypatch)
+    lobes = rim_stiffness(part, "lobes")
+    assert ("what they add in torsion" in lobes.method) == by_torsion
+    for found in (K_b, lobes):
         assert found.model == "solid"
         assert not found.guaranteed
         assert found.half_width < 0.02
@@ -127,6 +135,10 @@ def test_where_the_solid_model_fails_the_enclosure_stays(suite_cache: Path, monk
 
     case = replace(load_cases.CASES["lobes"], solid=fails)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
+    by_torsion = rim_stiffness(model(WIDE, suite_cache), "lobes")
+    assert by_torsion.half_width < 0.02
+    assert not by_torsion.shortfall
+    without_torsion(monkeypatch)
     found = rim_stiffness(model(WIDE, suite_cache), "lobes")
     assert found.half_width > 0.02
     assert TOO_FAR in found.shortfall.words
@@ -174,6 +186,7 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
     solver: str, suite_cache: Path, monkeypatch
 ) -> None:
     """With the solid model asked for by name too: K 30 % off is no answer."""
+    without_torsion(monkeypatch)
     case = load_cases.CASES["lobes"]
 
     def off(*given: object, **named: object) -> Stiffness:
@@ -185,6 +198,46 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
     )
     with pytest.raises(NestingError, match="the solid model"):
         rim_stiffness(model(WIDE.changed({"solver.model": solver}), suite_cache), "lobes")
+
+
+def test_a_wrong_K_b_in_torsion_is_found_out_under_the_lobes(
+    suite_cache: Path, monkeypatch
+) -> None:
+    solve = load_cases.part_stiffness
+    monkeypatch.setattr(load_cases, "part_stiffness", lambda part: solve(part).times(0.9))
+    with pytest.raises(NestingError):
+        rim_stiffness(model(WIDE, suite_cache), "lobes")
+
+
+def test_no_solid_model_of_the_lobes_follows_where_torsions_misses(
+    suite_cache: Path, monkeypatch
+) -> None:
+    """The holes are known no better there; where torsion's meets the tolerance one is tried."""
+    asked: list[float] = []
+
+    def solid(part: PartModel, known: float) -> Stiffness:
+        asked.append(known)
+        raise NoBetterMeshError(1.0, known)
+
+    case = replace(load_cases.CASES["lobes"], solid=solid)
+    monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
+    solve, part = load_cases.part_stiffness, model(WIDE, suite_cache)
+    K_b = solve(part)
+
+    def widened(to: float) -> Stiffness:
+        K = K_b.K_Nm_per_rad
+        return replace(K_b, lower_Nm_per_rad=K * (1 - to), upper_Nm_per_rad=K * (1 + to))
+
+    monkeypatch.setattr(load_cases, "part_stiffness", lambda part: widened(0.032))
+    missed = rim_stiffness(part, "lobes")
+    assert 0.02 < missed.half_width < load_cases.NO_BETTER * 0.032
+    assert missed.shortfall
+    assert not asked
+    monkeypatch.setattr(load_cases, "part_stiffness", lambda part: widened(0.0199))
+    monkeypatch.setattr(lobes_by_torsion, "ENTRY_DOUBT", 0.3)
+    missed = rim_stiffness(part, "lobes")
+    assert missed.half_width > 0.02
+    assert asked == [missed.half_width]
 
 
 @pytest.mark.long

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
+from wrong_models import without_torsion
 
 from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.geometry.design import Design
@@ -70,6 +71,8 @@ def test_it_is_narrower_than_the_enclosure_and_within(solver: str, suite_cache: 
 
 
 def with_held(monkeypatch: pytest.MonkeyPatch, solve: object) -> None:
+    """K held by `solve`, and not by torsion."""
+    without_torsion(monkeypatch)
     case = replace(load_cases.CASES["lobes"], solid=solve)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
 

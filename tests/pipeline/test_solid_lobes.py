@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
+from wrong_models import without_torsion
 
 from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.solid.lobes import promised
@@ -113,6 +114,7 @@ def test_the_enclosure_then_answers_and_says_why(
 
 
 def test_the_case_is_told_what_is_known(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    without_torsion(monkeypatch)
     told: list[float] = []
 
     def stands_in(part: PartModel, supported: bool, known: float) -> None:

@@ -1,0 +1,175 @@
+"""K_b under the lobes from that in torsion, of parts whose two bodies of revolution lie far apart.
+
+Two ways to know that it is right:
+
+- The quarter of tetrahedra under the lobes themselves, with the holes drawn: another load, another solve.
+- Networks of springs on a ring, small enough to solve exactly, of which springs are taken out at N places:
+  the bounds must hold for any network, any load of even harmonics and any N.
+"""
+
+from __future__ import annotations
+
+from math import lcm
+from pathlib import Path
+
+import numpy as np
+import pytest
+from example_files import EXAMPLES
+
+from flexspline.fea.types import Stiffness
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import load_cases
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.enclosed_part import by_two_bodies
+from flexspline.pipeline.enclosure import TwoBodies
+from flexspline.pipeline.lobes_by_torsion import ENTRY_DOUBT, lobes_by_torsion
+from flexspline.pipeline.part_stiffness import part_stiffness, revolved_stiffness
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.solid_lobes import solid_lobes
+
+TOLERANCE_PCT = 1.0
+CASES = {
+    "cup, six large holes": (
+        "xb1-40.toml", {"bolt_hole_diameter_mm": 4.4, "diaphragm_thickness_mm": 1.5},
+    ),
+    "cup, eight holes in a thin boss": (
+        "xb1-40.toml",
+        {"bolt_count": 8, "boss_thickness_mm": 0.9, "boss_diameter_mm": 20.0,
+         "bolt_circle_diameter_mm": 15.0, "bolt_hole_diameter_mm": 3.0},
+    ),
+    "cup, three large holes in a thin boss": (
+        "xb1-40.toml",
+        {"bolt_count": 3, "boss_thickness_mm": 0.9, "bolt_hole_diameter_mm": 4.4},
+    ),
+}  # fmt: skip
+LONG = ("cup, three large holes in a thin boss",)
+PLACES, LAYERS = 24, 4
+"""Of a network: nodes about the axis, and along it."""
+
+
+@pytest.mark.parametrize("supported", [True, False], ids=["held", "free"])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in CASES]
+)
+def test_tetrahedra_under_the_lobes_agree(
+    name: str, supported: bool, suite_cache: Path, record
+) -> None:
+    file, changes = CASES[name]
+    changed = {f"flexspline.{key}": value for key, value in changes.items()}
+    design = load_design(EXAMPLES / file).changed(
+        {**changed, "solver.tolerance_pct": TOLERANCE_PCT}
+    )
+    part = AnalysisContext(design, Cache(suite_cache), Progress()).part("flexspline")
+    case = "lobes" if supported else "lobes_unsupported"
+    solve = load_cases.CASES[case].revolved
+    whole = by_two_bodies(part, revolved_stiffness, lambda bodies: bodies.whole, expected=0.0)
+    bodies = by_two_bodies(part, solve, lambda bodies: bodies.enclosure(), expected=0.0)
+    found = by_two_bodies(
+        part,
+        solve,
+        lambda bodies: lobes_by_torsion(
+            part_stiffness(part), whole, bodies, design.flexspline.bolt_count, part.tolerance
+        ),
+        expected=0.0,
+    )
+    tetrahedra = solid_lobes(part, supported)
+    record(
+        f"K_b of {name}, lobes, {'seat held' if supported else 'rim free'}, from K_b in torsion",
+        "a quarter of tetrahedra under the lobes",
+        tetrahedra.K_Nm_per_rad,
+        found.K_Nm_per_rad,
+        "N·m/rad",
+    )
+    assert bodies.half_width > found.half_width
+    assert tetrahedra.lower_Nm_per_rad <= found.upper_Nm_per_rad
+    assert found.lower_Nm_per_rad <= tetrahedra.upper_Nm_per_rad
+    # both estimates are cautious: K is nearer than either says
+    least = min(found.half_width, tetrahedra.half_width)
+    assert found.K_Nm_per_rad == pytest.approx(tetrahedra.K_Nm_per_rad, rel=least)
+    assert not found.guaranteed
+
+
+def exact(compliance: float, shares: np.ndarray | None = None) -> Stiffness:
+    """1/K without any doubt."""
+    K = 1 / compliance
+    harmonics = () if shares is None else tuple(shares)
+    return Stiffness(K, K, K, False, "solid", "1", "exact", (), harmonics=harmonics)
+
+
+def network(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Stiffness matrices (n, n): springs along each layer and between layers; and of the last layer's ground.
+
+    All alike about the axis. The ground is two rings of springs, of which one may be taken out at places.
+    """
+    size = PLACES * LAYERS
+    K = np.zeros((size, size))
+
+    def spring(i: int, j: int, k: float) -> None:
+        K[np.ix_((i, j), (i, j))] += k * np.array([[1, -1], [-1, 1]])
+
+    along, between = rng.lognormal(0, 1.5, LAYERS), rng.lognormal(0, 1.5, LAYERS - 1)
+    for layer in range(LAYERS):
+        for place in range(PLACES):
+            i = layer * PLACES + place
+            spring(i, layer * PLACES + (place + 1) % PLACES, along[layer])
+            if layer + 1 < LAYERS:
+                spring(i, i + PLACES, between[layer])
+    kept, holed = np.zeros(size), np.zeros(size)
+    kept[-PLACES:], holed[-PLACES:] = rng.lognormal(0, 1.5), rng.lognormal(0, 1.5)
+    return K, kept, holed
+
+
+@pytest.mark.parametrize("holes", [2, 3, 4, 6, 8, 12])
+def test_the_bounds_hold_in_every_network(holes: int) -> None:
+    rng = np.random.default_rng(holes)
+    turn = 2 * np.pi * np.arange(PLACES) / PLACES
+    widths, before = [], []
+    for _ in range(100):
+        K, kept, holed = network(rng)
+        there = np.ones(PLACES * LAYERS)
+        there[-PLACES :: PLACES // holes] = 0.0  # no ground at the holes
+        t = rng.normal(size=4)  # of harmonics 0, 2, 4, 6
+        waves = [t[k] * np.cos(2 * k * turn) for k in range(4)]
+
+        def compliance(ground: np.ndarray, wave: np.ndarray, K: np.ndarray = K) -> float:
+            load = np.zeros(len(K))
+            load[:PLACES] = wave
+            return float(load @ np.linalg.solve(K + np.diag(ground), load))
+
+        part, whole, cut = kept + there * holed, kept + holed, kept
+        both = []
+        for ground in (cut, whole):
+            each = np.array([compliance(ground, wave) for wave in waves])
+            both.append(exact(each.sum(), each / each.sum()))
+        lobes = TwoBodies(*both)
+        truth = compliance(part, sum(waves))
+        found = lobes_by_torsion(
+            exact(compliance(part, waves[0])),
+            exact(compliance(whole, waves[0])),
+            lobes,
+            holes,
+            1.0,
+        )
+        assert found.lower_Nm_per_rad <= 1 / truth <= found.upper_Nm_per_rad
+        widths.append(found.half_width)
+        before.append(lobes.enclosure().half_width)
+    if lcm(2, holes) > 6:  # no coupling: what is left is the other harmonics
+        assert np.median(widths) < 0.7 * np.median(before)
+
+
+def test_the_interval_by_hand() -> None:
+    """1/K: whole 100 = 60 + 30 + 10, cut 130 = 85 + 33 + 12; three holes add 10 of at most 25 in torsion."""
+    lobes = TwoBodies(
+        exact(130.0, np.array([85.0, 33.0, 12.0]) / 130),
+        exact(100.0, np.array([60.0, 30.0, 10.0]) / 100),
+    )
+    found = lobes_by_torsion(exact(70.0), exact(60.0), lobes, 3, 0.001)
+    low, high = 10 * (1 - ENTRY_DOUBT), 10 * (1 + ENTRY_DOUBT)
+    # harmonics 2 and 4 differ by 3 and 2; three holes couple 0 with 6, which is not there
+    assert 1 / found.lower_Nm_per_rad == pytest.approx(100 + high + 5)
+    assert 1 / found.upper_Nm_per_rad == pytest.approx(100 + low)
+    assert found.shortfall
+    coupled = lobes_by_torsion(exact(70.0), exact(60.0), lobes, 4, 0.5)
+    assert 1 / coupled.lower_Nm_per_rad == pytest.approx(105 + high + 2 * np.sqrt(high * 2))
+    assert not coupled.shortfall
