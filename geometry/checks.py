@@ -18,7 +18,7 @@ from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
-from flexspline.geometry.module_fit import module_hint
+from flexspline.geometry.module_fit import MM_PER_M, diameter_in_metres, module_hint
 from flexspline.geometry.play_limit import beyond_play_limit
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
@@ -43,6 +43,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from flexspline_faults(design.flexspline, ring_ends(design))
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
+    yield from _metre_faults(design)
     yield from tooth_faults(design)
     yield from _clearance_faults(design)
     yield from _play_faults(design)
@@ -76,6 +77,19 @@ def _gear_faults(design: Design) -> Iterator[DesignError]:
             z2,
             f"must be {', '.join(str(n) for n in (z1 + 2, z1 + 4) if n <= TEETH.high)}, …: "
             f"teeth_flexspline = {z1} plus an even number for the two lobes",
+        )
+
+
+def _metre_faults(design: Design) -> Iterator[DesignError]:
+    """A diameter of 0.04 mm that is built takes a minute and ends in figures of nothing."""
+    fitting, inner_mm = diameter_in_metres(design), design.flexspline.inner_diameter_mm
+    if fitting is not None:
+        low, high = fitting
+        yield DesignError(
+            "flexspline.inner_diameter_mm",
+            inner_mm,
+            f"must be from {low:.4g} to {high:.4g} mm, which module and teeth fit; it looks like metres: "
+            f"{MM_PER_M * inner_mm:g} mm",
         )
 
 

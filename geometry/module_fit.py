@@ -16,18 +16,21 @@ def root_radius_mm(design: Design) -> float:
     return design.gear.module_mm * (design.gear.teeth_flexspline / 2 - DEDENDUM)
 
 
-def module_hint(design: Design) -> str:
-    """The module, or the diameter, that is far from what the rest of the ring asks for; else ""."""
+def diameter_in_metres(design: Design) -> tuple[float, float] | None:
+    """The inner diameters that module and teeth fit [mm], where that stated is one of them in metres."""
     root, part = root_radius_mm(design), design.flexspline
-    ring = part.ring_radius
+    ring, inner_mm = part.ring_radius, part.inner_diameter_mm
+    if _fits(root, ring) or not _fits(root, ring + (MM_PER_M - 1) * inner_mm / 2):
+        return None
+    outside = ring - inner_mm / 2
+    return 2 * (root / WRONG_MODULE_RATIO - outside), 2 * (root * WRONG_MODULE_RATIO - outside)
+
+
+def module_hint(design: Design) -> str:
+    """The module, where it is far from what the rest of the ring asks for; else ""."""
+    root, ring = root_radius_mm(design), design.flexspline.ring_radius
     if _fits(root, ring):
         return ""
-    inner_mm = part.inner_diameter_mm
-    if _fits(root, ring + (MM_PER_M - 1) * inner_mm / 2):
-        return (
-            f"flexspline.inner_diameter_mm = {inner_mm:g} looks like metres:"
-            f" module and teeth fit one of {MM_PER_M * inner_mm:g} mm"
-        )
     fits = ring / root * design.gear.module_mm
     return (
         f"gear.module_mm = {design.gear.module_mm:g} does not belong to this ring: with "

@@ -29,6 +29,9 @@ def backlash_answer(job: Job, K_b: float | None, K_e: float | None) -> Record:
     """
     design = job.design
     record = {**heading(design), "warnings": list(warnings(design))}
+    by_hand = {"K_b_Nm_per_rad": K_b, "K_e_Nm_per_rad": K_e}
+    if given := {key: K for key, K in by_hand.items() if K is not None}:
+        record["given"] = given
     used = given_pair(K_b, K_e) or stiffness_pair(job.context, K_b, K_e)
     if used.solved is not None:
         record |= stiffness_record(design, used.solved, job.wall_s)

@@ -96,6 +96,12 @@ QUANTITIES: tuple[Quantity, ...] = (
         "grip turned rigidly, mount held",
     ),
     Quantity(
+        "given.K_b_Nm_per_rad", STIFFNESS_UNIT, "Flexspline stiffness, given", "K_b", digits=5
+    ),
+    Quantity(
+        "given.K_e_Nm_per_rad", STIFFNESS_UNIT, "Output shaft stiffness, given", "K_e", digits=5
+    ),
+    Quantity(
         "K_series_Nm_per_rad",
         STIFFNESS_UNIT,
         "Series stiffness of flexspline and shaft",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import ON_ELLIPSE, PEAK_OF, limits_passed
 from flexspline.results.gear_words import gear_warnings
-from flexspline.results.limit_words import load_beyond, passed_line
+from flexspline.results.limit_words import load_beyond, passed_line, stiffness_notes
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
@@ -28,12 +28,13 @@ PEAK_KEYS = {
 def shortfalls(
     design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
 ) -> tuple[str, ...]:
-    """One line for each figure that passes a limit, whose bounds are wider than asked for, or that is
-    missing, and why."""
+    """One line for each figure that passes a limit, whose bounds are wider than asked for, that is known to
+    be off by more than they say, or that is missing, and why."""
     peaks = _peaks(found, fields or {})
     return (
         *map(passed_line, limits_passed(design, peaks)),
         *_wide(design, found),
+        *_beyond_bounds(design, found),
         *_unsettled(peaks),
         *_left_out(peaks),
         *_missing(found),
@@ -73,6 +74,14 @@ def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
                 " (solver.tolerance_pct)"
                 + (f": {stiffness.shortfall}" if stiffness.shortfall else "")
             )
+
+
+def _beyond_bounds(design: Design, found: Stiffnesses) -> Iterator[str]:
+    notes = stiffness_notes(design)
+    for name in found.solved:
+        if note := notes.get(f"{name}_Nm_per_rad"):
+            symbol = quantity(f"{name}_Nm_per_rad").symbol
+            yield f"{symbol} is {note}; its bounds do not count that"
 
 
 def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:

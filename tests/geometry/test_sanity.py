@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from example_files import EXAMPLES
 
@@ -86,15 +88,19 @@ def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module
     assert "would fit" not in line
 
 
-def test_a_diameter_in_metres_is_said() -> None:
+def test_a_diameter_in_metres_is_refused() -> None:
     """A hat's holes lie outside its tube, so that nothing else refuses it."""
     hat = load_design(EXAMPLES / "hat-25.toml")
     inner_mm = hat.flexspline.inner_diameter_mm
-    design = hat.changed({"flexspline.inner_diameter_mm": inner_mm / 1000})
-    (line,) = (t for t in warnings(design) if "tooth-root" in t)
-    assert f"flexspline.inner_diameter_mm = {inner_mm / 1000:g} looks like metres" in line
-    assert f"fit one of {inner_mm:g} mm" in line
-    assert "does not belong" not in line
+    with pytest.raises(DesignError, match="it looks like metres") as refused:
+        hat.changed({"flexspline.inner_diameter_mm": inner_mm / 1000})
+    assert refused.value.key == "flexspline.inner_diameter_mm"
+    assert refused.value.reason.endswith(f" {inner_mm:g} mm")
+    low, high = (float(x) for x in re.findall(r"from (\S+) to (\S+) mm", str(refused.value))[0])
+    assert low < inner_mm < high
+    for at_the_end in (1.001 * low, 0.999 * high):
+        hat.changed({"flexspline.inner_diameter_mm": at_the_end, "flexspline.flange_inner_diameter_mm": 2 * high,
+                     "flexspline.flange_outer_diameter_mm": 3 * high, "flexspline.bolt_count": 0})  # fmt: skip
 
 
 def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:

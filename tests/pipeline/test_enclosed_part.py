@@ -16,7 +16,13 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases, lobes_by_torsion, part_stiffness, solid_lobes, solid_torsion
+from flexspline.pipeline import (
+    load_cases,
+    lobes_by_torsion,
+    part_stiffness,
+    solid_lobes,
+    solid_torsion,
+)
 from flexspline.pipeline.analysis import stiffnesses, torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of

@@ -144,6 +144,7 @@ def test_backlash_with_given_stiffness_needs_no_fea(
     wind_up = result["backlash_arcsec"]["shaft"] + result["backlash_arcsec"]["flexspline"]
     assert wind_up == pytest.approx(11.46, abs=0.005)
     assert "K_b_Nm_per_rad" not in result  # not computed, so absent
+    assert result["given"] == {"K_b_Nm_per_rad": 36000.0, "K_e_Nm_per_rad": 36000.0}
     assert not (tmp_path / "cache").exists()
 
 

@@ -6,10 +6,13 @@ import pytest
 from example_files import EXAMPLES
 from hand_made_gear import content, design
 
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.limit_words import load_beyond, reason, stiffness_notes
 from flexspline.results.report.tables import answers
+from flexspline.results.warned import shortfalls
 
 
 @pytest.mark.parametrize(
@@ -55,6 +58,10 @@ def test_a_hat_on_a_shaft_held_over_more_than_its_flange_is_said_beside_K_e() ->
     assert "too large" in next(
         a["note"] for a in answers(content(design=hat)) if a["symbol"] == "K_e"
     )
+    K_e = Stiffness(6e5, 599e3, 601e3, False, "solid", "1/8", "hand made", ())
+    (line,) = shortfalls(hat, Stiffnesses({"K_e": K_e}))
+    assert "too large" in line
+    assert not shortfalls(hat, Stiffnesses({"K_b": K_e}))
     touched = hat.flexspline.size(hat.flexspline.land.inner)
     ring = {
         "shaft.segment[0].inner_diameter_mm": touched,
