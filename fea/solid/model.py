@@ -74,18 +74,19 @@ class Supports:
         self.value[nodes, component] = value
 
     def symmetry(self, antisymmetric: bool, planes: tuple[str, ...] = PLANES) -> None:
-        mesh = self._model.mesh
+        # the axis lies in both planes: what is normal to one lies in the other; a half has but one plane
+        two_planes = self._model.mesh.sector_deg != 180
         for patch in planes:
             nodes = self._model.on(patch)
+            axis = nodes[self._model.frames.radius[nodes] == 0]
             if antisymmetric:
                 self.set(nodes, RADIAL)
                 self.set(nodes, AXIAL)
-                # the axis lies in both planes: what is normal to one lies in the other
-                self.set(nodes[self._model.frames.radius[nodes] == 0], TANGENTIAL)
+                if two_planes:
+                    self.set(axis, TANGENTIAL)
             else:
                 self.set(nodes, TANGENTIAL)
-                axis = nodes[self._model.frames.radius[nodes] == 0]
-                if mesh.sector_deg != 180:
+                if two_planes:
                     self.set(axis, RADIAL)
 
     def hold(self, patch: str) -> None:

@@ -98,9 +98,10 @@ def test_a_diameter_in_metres_is_refused() -> None:
     assert refused.value.reason.endswith(f" {inner_mm:g} mm")
     low, high = (float(x) for x in re.findall(r"from (\S+) to (\S+) mm", str(refused.value))[0])
     assert low < inner_mm < high
+    flange = {"flange_inner_diameter_mm": 2 * high, "flange_outer_diameter_mm": 3 * high}
     for at_the_end in (1.001 * low, 0.999 * high):
-        hat.changed({"flexspline.inner_diameter_mm": at_the_end, "flexspline.flange_inner_diameter_mm": 2 * high,
-                     "flexspline.flange_outer_diameter_mm": 3 * high, "flexspline.bolt_count": 0})  # fmt: skip
+        tube = {"inner_diameter_mm": at_the_end, "bolt_count": 0}
+        hat.changed({f"flexspline.{key}": value for key, value in {**flange, **tube}.items()})
 
 
 def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:

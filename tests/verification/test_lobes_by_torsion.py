@@ -28,37 +28,29 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_lobes import solid_lobes
 
-TOLERANCE_PCT = 1.0
+TOLERANCE_PCT = 3.0
 CASES = {
-    "cup, six large holes": (
-        "xb1-40.toml", {"bolt_hole_diameter_mm": 4.4, "diaphragm_thickness_mm": 1.5},
-    ),
-    "cup, eight holes in a thin boss": (
-        "xb1-40.toml",
-        {"bolt_count": 8, "boss_thickness_mm": 0.9, "boss_diameter_mm": 20.0,
-         "bolt_circle_diameter_mm": 15.0, "bolt_hole_diameter_mm": 3.0},
-    ),
-    "cup, three large holes in a thin boss": (
-        "xb1-40.toml",
-        {"bolt_count": 3, "boss_thickness_mm": 0.9, "bolt_hole_diameter_mm": 4.4},
-    ),
+    "cup, six large holes": {"bolt_hole_diameter_mm": 4.4, "diaphragm_thickness_mm": 1.5},
+    "short cup, seven holes in a narrow land": {
+        "inner_diameter_mm": 19.6, "wall_thickness_mm": 0.8, "ring_thickness_mm": 0.8, "length_mm": 12.0,
+        "ring_width_mm": 3.7, "ring_offset_mm": 3.3, "diaphragm_thickness_mm": 1.9, "boss_thickness_mm": 1.9,
+        "boss_diameter_mm": 4.9, "bore_diameter_mm": 3.8, "inner_fillet_mm": 0.5, "outer_fillet_mm": 1.4,
+        "bolt_count": 7, "bolt_circle_diameter_mm": 4.4, "bolt_hole_diameter_mm": 0.33,
+    },
 }  # fmt: skip
-LONG = ("cup, three large holes in a thin boss",)
+"""Changes to xb1-40. The bodies in torsion are ± 2.4 and 17 % apart."""
 PLACES, LAYERS = 24, 4
 """Of a network: nodes about the axis, and along it."""
 
 
 @pytest.mark.parametrize("supported", [True, False], ids=["held", "free"])
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in CASES]
-)
+@pytest.mark.parametrize("name", CASES)
 def test_tetrahedra_under_the_lobes_agree(
     name: str, supported: bool, suite_cache: Path, record
 ) -> None:
-    file, changes = CASES[name]
-    changed = {f"flexspline.{key}": value for key, value in changes.items()}
-    design = load_design(EXAMPLES / file).changed(
-        {**changed, "solver.tolerance_pct": TOLERANCE_PCT}
+    changes = {f"flexspline.{key}": value for key, value in CASES[name].items()}
+    design = load_design(EXAMPLES / "xb1-40.toml").changed(
+        {**changes, "solver.tolerance_pct": TOLERANCE_PCT}
     )
     part = AnalysisContext(design, Cache(suite_cache), Progress()).part("flexspline")
     case = "lobes" if supported else "lobes_unsupported"
@@ -81,7 +73,8 @@ def test_tetrahedra_under_the_lobes_agree(
         found.K_Nm_per_rad,
         "N·m/rad",
     )
-    assert bodies.half_width > found.half_width
+    if supported:
+        assert bodies.half_width > 2 * found.half_width
     assert tetrahedra.lower_Nm_per_rad <= found.upper_Nm_per_rad
     assert found.lower_Nm_per_rad <= tetrahedra.upper_Nm_per_rad
     # both estimates are cautious: K is nearer than either says
