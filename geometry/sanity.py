@@ -86,14 +86,12 @@ def _root_radius(design: Design) -> Iterator[str]:
 
 
 def _fitting_ring(design: Design, root_mm: float) -> str:
-    """The ring's thickness that puts its outside to the root, where that is no thinner than the wall."""
+    """The ring's thickness that puts its outside to the root, or the tube's diameter where no wall allows it."""
     f = design.flexspline
     fits = root_mm - f.inner_radius
-    return (
-        f"; flexspline.ring_thickness_mm = {fits:.4g} would fit"
-        if fits >= f.wall_thickness_mm
-        else ""
-    )
+    if fits >= f.wall_thickness_mm:
+        return f"; flexspline.ring_thickness_mm = {fits:.4g} would fit"
+    return f"; flexspline.inner_diameter_mm = {2 * (root_mm - f.ring_thickness_mm):.4g} would fit"
 
 
 def _proportions(design: Design) -> Iterator[str]:
