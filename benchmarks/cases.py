@@ -68,7 +68,8 @@ class Case:
         if not path.exists():
             from flexspline.geometry.cad import build_solid, write_step
 
-            write_step(build_solid(self.design().part("flexspline"), sector_deg), path)
+            solid = build_solid(self.design().part("flexspline"), sector_deg)
+            write_step(solid, path, "flexspline")
         return path
 
     def patches(self) -> str:

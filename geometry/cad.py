@@ -112,9 +112,12 @@ def partition_faces(
     return faces
 
 
-def write_step(solid: cq.Solid, path: Path) -> None:
-    """STEP AP214 of the solid, in mm."""
-    solid.exportStep(str(path))
+def write_step(solid: cq.Solid, path: Path, name: str) -> None:
+    """STEP AP214 of the solid, in mm; `name`, of ASCII letters, is its product's."""
+    import cadquery as cq
+
+    # "fused": a product of its own, not an assembly of one part
+    cq.Assembly(solid, name=name).export(str(path), exportType="STEP", mode="fused")
 
 
 def write_stl(solid: cq.Solid, path: Path, chord_error: float) -> None:

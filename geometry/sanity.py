@@ -86,7 +86,7 @@ def _root_radius(design: Design) -> Iterator[str]:
 
 
 def _fitting_ring(design: Design, root_mm: float) -> str:
-    """The ring's thickness that puts its outside to the root, or the tube's diameter where no wall allows it."""
+    """The ring's thickness that puts its outside to the root, or the tube's diameter."""
     f = design.flexspline
     fits = root_mm - f.inner_radius
     if fits >= f.wall_thickness_mm:

@@ -148,7 +148,9 @@ def test_step_and_stl_keep_the_volume(
     import trimesh
 
     solid = build_solid(load_design(EXAMPLES / f"{example}.toml").part(part))
-    write_step(solid, tmp_path / "part.step")
+    write_step(solid, tmp_path / "part.step", "a/b 'c', shaft")
+    written = (tmp_path / "part.step").read_text(encoding="ascii")
+    assert "PRODUCT('a/b ''c'', shaft'," in written
     again = cq.importers.importStep(str(tmp_path / "part.step")).val()
     # STEP writes 15 digits, the surfaces are the same
     assert again.Volume() == pytest.approx(solid.Volume(), rel=KERNEL)
