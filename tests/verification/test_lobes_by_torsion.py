@@ -73,13 +73,13 @@ def test_tetrahedra_under_the_lobes_agree(
         found.K_Nm_per_rad,
         "N·m/rad",
     )
-    if supported:
-        assert bodies.half_width > 2 * found.half_width
     assert tetrahedra.lower_Nm_per_rad <= found.upper_Nm_per_rad
     assert found.lower_Nm_per_rad <= tetrahedra.upper_Nm_per_rad
-    # both estimates are cautious: K is nearer than either says
-    least = min(found.half_width, tetrahedra.half_width)
-    assert found.K_Nm_per_rad == pytest.approx(tetrahedra.K_Nm_per_rad, rel=least)
+    if supported:  # of a free rim harmonic 2 reaches the holes: the interval is wide
+        # both estimates are cautious: K is nearer than either says
+        assert bodies.half_width > 2 * found.half_width
+        least = min(found.half_width, tetrahedra.half_width)
+        assert found.K_Nm_per_rad == pytest.approx(tetrahedra.K_Nm_per_rad, rel=least)
     assert not found.guaranteed
 
 
