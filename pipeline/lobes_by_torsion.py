@@ -12,6 +12,7 @@ from dataclasses import replace
 from math import lcm, sqrt
 
 from flexspline.fea.types import MET, Shortfall, Stiffness
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.percent import percent
 from flexspline.pipeline.enclosed_part import TOO_FAR
 from flexspline.pipeline.enclosure import TwoBodies
@@ -33,7 +34,13 @@ def lobes_by_torsion(
     lobes : under the lobe load, of both bodies, with their `harmonics`.
     holes : how many are spread evenly over the turn.
     tolerance : half-width wanted; why it is missed is the `shortfall`.
+
+    Raises
+    ------
+    ComputationError : a body without `harmonics`, of a load case that is not solved by them.
     """
+    if not (lobes.cut.harmonics and lobes.whole.harmonics):
+        raise ComputationError("no harmonics tell the load's torque from the rest")
     low, high = _added(K_b, torsion_whole)
     rest = _apart(lobes, 2)
     # N holes couple harmonic 0 with multiples of N, and the load has even ones only

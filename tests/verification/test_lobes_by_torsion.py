@@ -17,6 +17,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.types import Stiffness
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases
 from flexspline.pipeline.cache import Cache
@@ -166,3 +167,8 @@ def test_the_interval_by_hand() -> None:
     coupled = lobes_by_torsion(exact(70.0), exact(60.0), lobes, 4, 0.5)
     assert 1 / coupled.lower_Nm_per_rad == pytest.approx(105 + high + 2 * np.sqrt(high * 2))
     assert not coupled.shortfall
+
+
+def test_bodies_without_harmonics_are_refused() -> None:
+    with pytest.raises(ComputationError, match="no harmonics"):
+        lobes_by_torsion(exact(70.0), exact(60.0), TwoBodies(exact(130.0), exact(100.0)), 6, 0.5)
