@@ -31,8 +31,8 @@ LEAST_MOVE = STUDY_LOBE_WIDTH / 2
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
-def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
-    """Sentences of the section "Scope and limits"; `of_best`: the warnings of the best designs."""
+def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
+    """Sentences of the section "Scope and limits"; `of_designs`: warnings of the first and the best."""
     said = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
         f"is between bounds at most {100 * STUDY_TORSION_WIDTH:g} % apart, lobes "
@@ -43,7 +43,7 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
     said += map(sentence, unsettled(result))
     said += _borders(result)
     said += _whole_gear(result)
-    said += map(sentence, of_best)
+    said += map(sentence, of_designs)
     if not result.verified:
         asked = result.study.file.run.verify
         why = (

@@ -71,19 +71,21 @@ def write_study_reports(
     pictures: Sequence[Path],
     best: BestStress | None = None,
     attached: tuple[Attachment, ...] = (),
-    of_best: Sequence[str] = (),
+    of_designs: Sequence[str] = (),
 ) -> list[Path]:
     """Write report.pdf and report.html, each whole or not at all; their paths.
 
-    With `best` its picture turns in the browser, or the report says why it is missing; `of_best` are the
-    warnings of the best designs.
+    With `best` its picture turns in the browser, or the report says why it is missing; `of_designs` are the
+    warnings of the designs themselves.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
     best = best or BestStress()
-    document = study_document(result, [p.name for p in pictures], attached, best.missing, of_best)
+    document = study_document(
+        result, [p.name for p in pictures], attached, best.missing, of_designs
+    )
     made = reports_of(document, {p.stem: p for p in pictures}, best.views)
     return write_together(folder, made)
 
@@ -93,10 +95,10 @@ def study_document(
     pictures: Sequence[str],
     attached: tuple[Attachment, ...] = (),
     missing: str = "",
-    of_best: Sequence[str] = (),
+    of_designs: Sequence[str] = (),
 ) -> Document:
-    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_best`
-    its warnings."""
+    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_designs`
+    the designs' warnings."""
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
@@ -110,7 +112,7 @@ def study_document(
         *(_not_drawn(missing, result) if missing and BEST_STRESS not in pictures else ()),
         *_failures(result),
         Heading("Scope and limits"),
-        Bullets(tuple(map(worded, notes(result, of_best)))),
+        Bullets(tuple(map(worded, notes(result, of_designs)))),
     )
     return Document(
         title="A study of designs",
