@@ -1,6 +1,7 @@
 """What a study's report says when models disagree, and when no design is allowed."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
@@ -33,6 +34,7 @@ from flexspline.results.study.why import (
 WALL = "flexspline.wall_thickness_mm"
 FLAG = "wave_generator_peak_at_excluded_border"
 K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
+HALF_SEAT = "wave_generator_peak_half_seat_mises_MPa"
 STUDY = f"""
 design = "xb1-40.toml"
 [vary]
@@ -48,11 +50,11 @@ method = "sobol"
 NO_OBJECTIVE = STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")
 
 
-def result_of(text: str = STUDY) -> StudyResult:
+def result_of(text: str = STUDY, more: Mapping[str, float] | None = None) -> StudyResult:
     """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
     study = study_from(tomllib.loads(text), EXAMPLES, "test")
     rows = tuple(
-        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i}))
+        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i, **(more or {})}))
         for i in range(10)
     )  # fmt: skip
     return StudyResult(study, rows)
@@ -228,6 +230,37 @@ def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
     assert "(a constraint of this study): in 3 of 10" in " ".join(notes(replace(result, rows=rows)))
     unasked = STUDY.replace(f'"{STRESS}" = {{ max = 300.0 }}\n', "")
     assert not list(border_warnings(replace(result_of(unasked), rows=rows)))
+
+
+@pytest.mark.parametrize(
+    ("most", "flagged_designs", "said"),
+    [
+        ("330.0", 10, "of 3 designs that keep to this constraint 3 do so by such a figure"),
+        ("330.0", 1, "of 3 designs that keep to this constraint 1 do so by such a figure"),
+        ("300.0", 10, ""),
+    ],
+)
+def test_a_constraint_that_marked_peaks_keep_names_the_figure_to_use(
+    most: str, flagged_designs: int, said: str
+) -> None:
+    result = result_of(STUDY.replace("300.0", most))
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, FLAG: float(r.slot < flagged_designs)}))
+        for r in result.rows
+    )
+    result = replace(result, rows=rows)
+    (line,) = border_warnings(result)
+    assert ("designs that keep to this constraint" in line) is bool(said)
+    assert said in line
+    assert f"the figure to use is {HALF_SEAT}" in line
+    assert f"the figure to use is {HALF_SEAT}" in " ".join(notes(result))
+
+
+def test_a_study_that_asks_for_the_half_seat_figure_is_not_told_to() -> None:
+    text = STUDY.replace("[constraint]", f'[constraint]\n"{HALF_SEAT}" = {{ max = 500.0 }}')
+    result = flagged(result_of(text, {HALF_SEAT: 310.0}))
+    (line,) = border_warnings(result)
+    assert "the figure to use" not in line
 
 
 def test_keys_of_holes_are_named_as_not_followed() -> None:
