@@ -51,12 +51,15 @@ METHODS = {
 }
 WIDTHS = {
     "pareto.png": 75, "best.png": 78, BEST_STRESS: 75, "convergence.png": 75, "parallel.png": 88,
+    "sweep.png": 80,
 }  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design that was built, and the Pareto front.",
     "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
     "constraint allows.",
+    "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
+    "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
     "best.png": "{sections} in section, over the design that the study began with.",
     BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",

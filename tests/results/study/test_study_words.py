@@ -54,7 +54,11 @@ def result_of(text: str = STUDY, more: Mapping[str, float] | None = None) -> Stu
     """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
     study = study_from(tomllib.loads(text), EXAMPLES, "test")
     rows = tuple(
-        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i, **(more or {})}))
+        Row(
+            i,
+            {WALL: 0.3 + 0.02 * i},
+            Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i, **(more or {})}),
+        )
         for i in range(10)
     )  # fmt: skip
     return StudyResult(study, rows)
