@@ -136,6 +136,43 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
     assert "upper end of the span in wall thickness" in said
 
 
+@pytest.mark.parametrize("columns", ["", "60"])
+def test_the_best_are_listed_with_their_constrained_figures(
+    columns: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the end of the line, or where that is too long below it."""
+    monkeypatch.setenv("COLUMNS", columns)
+    result = result_of(STUDY.replace("300.0", "330.0"))
+    listed = words(result, summary(result) | {"files": []}).splitlines()[1:]
+    between = "\n    " if columns else ", "
+    figures = result.best(1)[0].outcome.figures
+    stress, total = valued(STRESS, figures), valued(TOTAL, figures)
+    assert "\n".join(listed).startswith(
+        f"  design 2: wall thickness {entry(WALL).with_unit(0.34)}: K_b = {valued(K, figures)}{between}"
+        f"σ_WG = {stress}, Δ_bl = {total}"
+    )
+
+
+def test_the_start_is_listed_with_them_and_what_it_breaks() -> None:
+    result = result_of(STUDY.replace("300.0", "330.0"))
+    start = Outcome({K: 4e4, STRESS: 436.0, TOTAL: 80.0})
+    result = replace(result, start=start)
+    line = words(result, summary(result) | {"files": []}).splitlines()[1]
+    figures = f"{valued(K, start.figures)}, σ_WG = {valued(STRESS, start.figures)}, Δ_bl = "
+    assert figures in line
+    assert line.index(figures) < line.index("; breaks a constraint (")
+
+
+def test_a_bound_is_listed_by_its_name() -> None:
+    low = "K_b_bounds_Nm_per_rad[0]"
+    text = STUDY.replace("300.0", "330.0").replace(
+        "[constraint]", f'[constraint]\n"{low}" = {{ min = 1 }}'
+    )
+    result = result_of(text, {low: 2.9e4})
+    said = words(result, summary(result) | {"files": []})
+    assert f"{entry(low).name} = {valued(low, {low: 2.9e4})}" in said
+
+
 def test_the_report_repeats_what_is_asked() -> None:
     text = STUDY.replace("min = 0.3, max = 0.5", "min = 0.3, max = 0.5, steps = 3").replace(
         "[objective]", '[link]\n"flexspline.ring_thickness_mm" = { of = "flexspline.wall_thickness_mm", '
