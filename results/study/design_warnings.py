@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import chain
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
@@ -19,21 +20,27 @@ COUNTED_DESIGNS = 10_000
 FIRST = "the design that the study begins with"
 
 
+@dataclass(frozen=True)
+class _Warning:
+    """A line, and what it has in common with those of other designs."""
+
+    line: str
+    kind: str
+
+
 def design_warnings(result: StudyResult) -> list[str]:
     """A line for each warning of the best design and of the first, and the numbers of other listed designs
     with lines of their own."""
     best, *others = _listed(result) or (None,)
-    first = warnings(result.study.design)
-    of_best = [] if best is None else warnings(result.design_of(best))
-    kinds = {_kind(line) for line in of_best}
-    told = [(f"design {best.slot}", line) for line in of_best] if best else []
-    told += [(FIRST, line) for line in first if _kind(line) not in kinds]
+    first = _of_design(result.study.design)
+    of_best = [] if best is None else _of_row(result, best)
+    kinds = {warning.kind for warning in of_best}
+    told = [(f"design {best.slot}", warning) for warning in of_best] if best else []
+    told += [(FIRST, warning) for warning in first if warning.kind not in kinds]
     count = _counts(result) if told else None
-    said = [f"{name}{_in_how_many(count, line, result)}: {line}" for name, line in told]
-    if best:
-        said += [f"design {best.slot}: {line}" for line in _passed(result.design_of(best), best)]
+    said = [f"{name}{_in_how_many(count, w.kind, result)}: {w.line}" for name, w in told]
     known = {*first, *of_best}
-    if more := [str(row.slot) for row in others if _has_more(result.design_of(row), row, known)]:
+    if more := [str(row.slot) for row in others if not known.issuperset(_of_row(result, row))]:
         said.append(
             f"other listed designs with warnings: {', '.join(more)}; to read them, put a design's row of "
             "study.csv into a design file and run flexspline run on it"
@@ -45,33 +52,28 @@ def _listed(result: StudyResult) -> tuple[Row, ...]:
     return () if result.about_scatter else result.best(LISTED_DESIGNS)
 
 
-def _kind(line: str) -> str:
-    """A warning without its numbers and without the cure behind it, which not every design has."""
-    return without_numbers(line.partition("; ")[0])
+def _of_design(design: Design) -> list[_Warning]:
+    """Of its dimensions; the cure behind a warning, which not every design has, is no part of the kind."""
+    return [_Warning(line, without_numbers(line.partition("; ")[0])) for line in warnings(design)]
+
+
+def _of_row(result: StudyResult, row: Row) -> list[_Warning]:
+    """Of its dimensions, and the limits that its peaks pass."""
+    design = result.design_of(row)
+    passed = limits_passed(design, _peaks(row))
+    return [*_of_design(design), *(_Warning(passed_line(p), f"{p.name} {p.key}") for p in passed)]
 
 
 def _counts(result: StudyResult) -> Counter[str] | None:
     """In how many of the designs built each kind of warning stands; None of too many designs."""
     if not 1 < len(result.built) <= COUNTED_DESIGNS:
         return None
-    each = (warnings(result.design_of(row)) for row in result.built)
-    return Counter(kind for lines in each for kind in {_kind(line) for line in lines})
+    each = ({warning.kind for warning in _of_row(result, row)} for row in result.built)
+    return Counter(chain.from_iterable(each))
 
 
-def _in_how_many(count: Counter[str] | None, line: str, result: StudyResult) -> str:
-    if count is None:
-        return ""
-    return f" (in {count[_kind(line)]} of {len(result.built)} designs)"
-
-
-def _has_more(design: Design, row: Row, known: set[str]) -> bool:
-    """Whether a design has a warning beyond those known."""
-    return not known.issuperset(warnings(design)) or any(_passed(design, row))
-
-
-def _passed(design: Design, row: Row) -> Iterable[str]:
-    """The limits that a row's peaks pass."""
-    return map(passed_line, limits_passed(design, _peaks(row)))
+def _in_how_many(count: Counter[str] | None, kind: str, result: StudyResult) -> str:
+    return "" if count is None else f" (in {count[kind]} of {len(result.built)} designs)"
 
 
 def _peaks(row: Row) -> dict[str, Peak]:

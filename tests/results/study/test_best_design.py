@@ -92,6 +92,13 @@ def test_a_peak_above_the_fatigue_limit_is_said(peak: float, said: int) -> None:
     assert len(in_report) == said
 
 
+def test_designs_above_the_fatigue_limit_are_counted() -> None:
+    """Peaks of other sizes pass the same limit."""
+    line, others = design_warnings(result_of((0.55, 600.0), (0.56, 501.0), (0.54, 499.0)))
+    assert line.startswith("design 1 (in 2 of 3 designs): wave_generator_peak_mises_MPa = 501")
+    assert others.startswith("other listed designs with warnings: 0; ")
+
+
 def begun_with(result: StudyResult, slot: int) -> StudyResult:
     """The study as if the design of that row were its first."""
     return replace(result, study=replace(result.study, design=result.design_of(result.rows[slot])))
