@@ -12,7 +12,9 @@ from flexspline.fea.axisymmetric.peak_refinement import StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
 from flexspline.fea.types import Elastic, StressPeak
+from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.part import Part
+from flexspline.pipeline.ellipse_peak import NARROW_SEAT
 from flexspline.pipeline.refining import Refining
 from flexspline.pipeline.revolved import KEPT_PARTS, of_1_GPa
 
@@ -23,6 +25,12 @@ KEPT_FIELDS = 32
 def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
     """The peak stress on the wave generator's ellipse; errors as `torsion`."""
     found = _ellipse_peak(_body(part), tolerance)
+    return found.times(w0_mm * part.material.youngs_modulus_GPa)
+
+
+def half_seat_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
+    """The same on a seat half as wide as the ring; errors as `torsion`."""
+    found = _half_seat_peak(_body(part), tolerance)
     return found.times(w0_mm * part.material.youngs_modulus_GPa)
 
 
@@ -72,6 +80,13 @@ def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
     return ellipse_stress(
         part.meridian, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance
     ).peak
+
+
+@lru_cache(maxsize=KEPT_PARTS)
+def _half_seat_peak(part: Part, tolerance: float) -> StressPeak:
+    """For w0 = 1 mm."""
+    narrow = with_narrow_seat(part.meridian, NARROW_SEAT)
+    return ellipse_stress(narrow, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance).peak
 
 
 @lru_cache(maxsize=KEPT_PARTS)

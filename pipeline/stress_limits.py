@@ -16,6 +16,8 @@ HIGHEST_STRENGTH_MPA = 2000.0
 linear elastic beyond."""
 ON_ELLIPSE = "wave_generator_peak"
 """The peak that no torque makes, as result.json names it."""
+ON_HALF_SEAT = f"{ON_ELLIPSE}_half_seat"
+"""The same on a seat half as wide as the ring: seldom at the excluded border."""
 PART_OF: Mapping[str, PartName] = {
     ON_ELLIPSE: "flexspline",
     "torque_peak": "flexspline",

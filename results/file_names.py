@@ -55,7 +55,7 @@ RUN = (*ONE_RECORD, *_reports(REPORT), *_pictures(*RENDERED, *CHARTS))
 GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
 STUDY = (
     "study.db", "study.csv", "study.parquet", BEST_DESIGN, BEST_STRESS, *_reports(REPORT),
-    *_pictures("pareto", "best", "parallel", "convergence", "tolerance"),
+    *_pictures("pareto", "best", "parallel", "sweep", "convergence", "tolerance"),
 )  # fmt: skip
 
 

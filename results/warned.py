@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from flexspline.pipeline.stress_limits import ON_ELLIPSE, PEAK_OF, limits_passed
+from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT, PEAK_OF, limits_passed
 from flexspline.results.gear_words import gear_warnings
 from flexspline.results.limit_words import load_beyond, passed_line, stiffness_notes
 from flexspline.results.numbers import beyond
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 PEAK_KEYS = {
     **{case: f"{peak}_mises_MPa" for case, peak in PEAK_OF.items()},
     ON_ELLIPSE: f"{ON_ELLIPSE}_mises_MPa",
-    "half_seat_peak": f"{ON_ELLIPSE}_half_seat_mises_MPa",
+    "half_seat_peak": f"{ON_HALF_SEAT}_mises_MPa",
 }
 """Keys in result.json of peak stresses, by the names under which they are solved; all else is a stiffness."""
 

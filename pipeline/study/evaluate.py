@@ -25,8 +25,9 @@ from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
-from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
+from flexspline.pipeline.revolved_stress import ellipse_peak, half_seat_peak, torque_peak
 from flexspline.pipeline.rim_case import RIM_CASES, figure_of
+from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT
 from flexspline.pipeline.study.design_faults import DESIGN_FAULTS
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve, stiffness_figures
 from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
@@ -110,7 +111,9 @@ def figures_of(
         if case in solves or figure_of(case) == in_sum:
             asked[figure_of(case)] = partial(CASES[case].fast, flexspline, STUDY_LOBE_WIDTH)
     if "ellipse" in solves:
-        asked["wave_generator_peak"] = lambda: ellipse_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
+        asked[ON_ELLIPSE] = lambda: ellipse_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
+    if "half_seat" in solves:
+        asked[ON_HALF_SEAT] = lambda: half_seat_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
     if "torque" in solves:
         asked["torque_peak"] = lambda: torque_peak(flexspline, torque, STUDY_STRESS_TOLERANCE)
         asked["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STUDY_STRESS_TOLERANCE)

@@ -9,8 +9,9 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.near_key import nearest_key
 from flexspline.pipeline.backlash import TERMS
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
+from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT
 
-Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
+Solve = Literal["torsion", "ellipse", "half_seat", "torque", "gear"] | RimCase
 
 
 def stiffness_keys(name: str) -> tuple[str, str, str]:
@@ -33,7 +34,8 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
         *(f"backlash_arcsec.{name}" for name in (*TERMS, "total", "std")),
     ),
     **{case: stiffness_keys(figure_of(case)) for case in RIM_CASES},
-    "ellipse": ("wave_generator_peak_mises_MPa",),
+    "ellipse": (f"{ON_ELLIPSE}_mises_MPa",),
+    "half_seat": (f"{ON_HALF_SEAT}_mises_MPa",),
     "torque": ("torque_peak_mises_MPa", "shaft_torque_peak_mises_MPa"),
     "gear": (
         "K1_Nm_per_rad",

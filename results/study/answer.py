@@ -13,8 +13,9 @@ from flexspline.pipeline.study.run import source_of, trial_store_of, whole_study
 from flexspline.pipeline.study.study import Study
 from flexspline.results.job import tell, tell_all
 from flexspline.results.report.attached import Attachment
-from flexspline.results.study.best_design import best_warnings, write_best_design
+from flexspline.results.study.best_design import write_best_design
 from flexspline.results.study.best_stress import BestStress, draw_best_stress
+from flexspline.results.study.design_warnings import design_warnings
 from flexspline.results.study.figures import write_figures
 from flexspline.results.study.notes import border_warnings, preloaded, unsettled, wide_bounds
 from flexspline.results.study.progress import Watch
@@ -45,10 +46,10 @@ def study_answer(
     result: StudyResult, folder: Path, attached: tuple[Attachment, ...]
 ) -> dict[str, Any]:
     """The keys of docs/contract.md; warnings are told, and all files of `folder` are written."""
-    of_best = tuple(best_warnings(result))
+    of_designs = tuple(design_warnings(result))
     tell_all(
         (*unsettled(result), *wide_bounds(result), *border_warnings(result), *preloaded(result),
-         *of_best)
+         *of_designs)
     )  # fmt: skip
     tables = _write_tables(folder, result)
     record: dict[str, Any] = summary(result)
@@ -58,7 +59,7 @@ def study_answer(
     pictures = write_figures(folder, result, best.picture)
     if best_file := write_best_design(folder, result):
         tables.append(best_file)
-    reports = write_study_reports(folder, result, pictures, best, attached, of_best)
+    reports = write_study_reports(folder, result, pictures, best, attached, of_designs)
     record["files"] = [str(path) for path in (*tables, *pictures, *reports)]
     return record
 

@@ -57,7 +57,12 @@ def _cause(fault: str) -> str:
     key, equals, _ = fault.partition(" = ")
     if equals and " " not in key:
         return key
-    return _NUMBER.sub("…", fault)
+    return without_numbers(fault)
+
+
+def without_numbers(said: str) -> str:
+    """What two designs have in common where they differ in their numbers alone."""
+    return _NUMBER.sub("…", said)
 
 
 def failure_lines(result: StudyResult) -> Iterator[str]:

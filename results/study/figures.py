@@ -1,4 +1,4 @@
-"""The pictures of a study: Pareto front, parallel coordinates, convergence."""
+"""The pictures of a study: which there are; Pareto front, parallel coordinates, convergence."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.study.best_figure import write_best
 from flexspline.results.study.labels import axis_label, entry, lines_of
+from flexspline.results.study.sweep_figure import is_sweep, write_sweep
 from flexspline.results.study.tolerance_figure import write_scatter
 from flexspline.results.style import (
     ACCENT,
@@ -46,15 +47,21 @@ def write_figures(folder: Path, result: StudyResult, best: Path | None = None) -
         if best:
             written.append(best)
     if result.shown and not result.about_scatter:
-        written.append(folder / "parallel.png")
-        write_parallel(written[-1], result)
-    if objectives and not result.about_scatter:
+        name, draw = ("sweep", write_sweep) if is_sweep(result) else ("parallel", write_parallel)
+        written.append(folder / f"{name}.png")
+        draw(written[-1], result)
+    if objectives and not result.about_scatter and not _has_no_order(result):
         written.append(folder / "convergence.png")
         write_convergence(written[-1], result)
     for i, scatter in enumerate(result.scatter):
         written.append(folder / ("tolerance.png" if i == 0 else f"tolerance-{i + 1}.png"))
         write_scatter(written[-1], scatter)
     return written
+
+
+def _has_no_order(result: StudyResult) -> bool:
+    """Whether designs follow each other by no choice and one curve shows them all."""
+    return is_sweep(result) and result.study.file.run.method != "optimize"
 
 
 def _values(rows: tuple[Row, ...], key: str) -> np.ndarray:

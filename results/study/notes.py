@@ -11,7 +11,7 @@ from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.part_name import PART_NAMES
 from flexspline.geometry.percent import percent
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
-from flexspline.pipeline.stress_limits import PART_OF
+from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT, PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_WIDTH, STUDY_TORSION_WIDTH
 from flexspline.pipeline.study.figures import stiffness_keys
 from flexspline.pipeline.study.holes import HOLE_EFFECT_DRIFT, drifts, pierced
@@ -28,11 +28,11 @@ LATE_SHARE = 0.25
 """Of a search's designs, the last: what words call a quarter."""
 LEAST_MOVE = STUDY_LOBE_WIDTH / 2
 """Of the best figure: half of what bounds of K are wide in a study."""
-PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
+PEAKS = tuple(f"{name}_mises_MPa" for name in (*PART_OF, ON_HALF_SEAT))
 
 
-def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
-    """Sentences of the section "Scope and limits"; `of_best`: the warnings of the best designs."""
+def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
+    """Sentences of the section "Scope and limits"; `of_designs`: warnings of the first and the best."""
     said = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
         f"is between bounds at most {100 * STUDY_TORSION_WIDTH:g} % apart, lobes "
@@ -43,7 +43,7 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
     said += map(sentence, unsettled(result))
     said += _borders(result)
     said += _whole_gear(result)
-    said += map(sentence, of_best)
+    said += map(sentence, of_designs)
     if not result.verified:
         asked = result.study.file.run.verify
         why = (
@@ -65,7 +65,8 @@ def _borders(result: StudyResult) -> Iterable[str]:
             name = f"{entry(key).name} ({used})" if used else entry(key).name
             mark = f" ({MARK})" if key in in_table else ""
             meaning = "" if mark else f": {MEANING}"
-            yield f"{name}: in {count} of {len(rows)} designs {BORDER}{mark}{meaning}."
+            advice = _advice(result, key)
+            yield f"{name}: in {count} of {len(rows)} designs {BORDER}{mark}{meaning}{advice}."
 
 
 def border_warnings(result: StudyResult) -> Iterable[str]:
@@ -73,7 +74,25 @@ def border_warnings(result: StudyResult) -> Iterable[str]:
     for key in PEAKS:
         count = sum(at_border(key, r.outcome.figures) for r in result.built)
         if count and (used := _used(result, key)):
-            yield f"{entry(key).name} ({used}): in {count} of {len(result.built)} designs {BORDER}: {MEANING}"
+            yield (
+                f"{entry(key).name} ({used}): in {count} of {len(result.built)} designs {BORDER}: "
+                f"{MEANING}{_advice(result, key)}"
+            )
+
+
+def _advice(result: StudyResult, key: str) -> str:
+    """How many keep to a constraint by such a peak alone, and which figure to ask for in its place."""
+    said, limit = "", result.study.file.constraint.get(key)
+    if limit is not None and limit.max is not None:
+        kept = [
+            r.outcome.figures for r in result.built if limit.excess(r.outcome.figures[key]) <= 0
+        ]
+        if count := sum(at_border(key, figures) for figures in kept):
+            said = f"; of {len(kept)} designs that keep to this constraint {count} do so by such a figure"
+    better = f"{ON_HALF_SEAT}_mises_MPa"
+    if key == f"{ON_ELLIPSE}_mises_MPa" and _used(result, key) and not _used(result, better):
+        said += f"; the figure to use is {better}, on a seat half as wide as the ring"
+    return said
 
 
 def _used(result: StudyResult, key: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from flexspline import __version__
@@ -12,11 +12,13 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
 from flexspline.results.numbers import signed
+from flexspline.results.quantities import BY_KEY
 from flexspline.results.study.failures import FailureReason, causes, failure_lines
 from flexspline.results.study.labels import LISTED_DESIGNS, entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
 from flexspline.results.study.why import disagreement, incomplete, misses
+from flexspline.results.terminal import width
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
@@ -129,10 +131,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")
     best = () if result.about_scatter else result.best(LISTED_DESIGNS)
-    if best and result.start is not None:
-        begun = _line(result, "start", result.study.start_values, result.start)
-        lines.append("; ".join(filter(None, (begun, start_breaks(result)))))
-    lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
+    lines += _best_lines(result, best)
     lines += [f"  {line}" for line in (*unbeaten_start(result), *misses(result))]
     lines += [f"  {line}" for line in failure_lines(result)]
     if result.unscattered:
@@ -144,14 +143,38 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     return "\n".join([*lines, *(f"  {name}" for name in record["files"])])
 
 
+def _best_lines(result: StudyResult, best: Sequence[Row]) -> list[str]:
+    """The start and each design, constrained figures at the end, or below where one line is too long."""
+    if not best:
+        return []
+    designs = [(f"design {row.slot}", row.values, row.outcome) for row in best]
+    if result.start is not None:
+        designs.insert(0, ("start", result.study.start_values, result.start))
+    constrained = [k for k in result.study.file.constraint if k not in result.study.file.objective]
+    begun = [_line(result, *design) for design in designs]
+    more = [_figures(constrained, outcome.figures) for _, _, outcome in designs]
+    beside = [", ".join(filter(None, both)) for both in zip(begun, more, strict=True)]
+    fits = all(len(line) <= width() for line in beside)
+    lines = beside if fits else begun
+    if breaks := start_breaks(result):
+        lines[0] += f"; {breaks}"
+    if fits:
+        return lines
+    return ["\n    ".join(filter(None, both)) for both in zip(lines, more, strict=True)]
+
+
+def _figures(keys: Iterable[str], figures: Mapping[str, float]) -> str:
+    """Those that a design has, by their symbols; a bound, which has its figure's, by its name."""
+    said = ((entry(k), k) for k in keys if k in figures)
+    return ", ".join(
+        f"{q.symbol if k in BY_KEY else q.name} = {valued(k, figures)}" for q, k in said
+    )
+
+
 def _line(result: StudyResult, name: str, values: Mapping[str, float], outcome: Outcome) -> str:
     """A design's varied values and its objectives; why these are missing, where they are."""
     said = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in values.items())
-    figures = ", ".join(
-        f"{entry(k).symbol} = {valued(k, outcome.figures)}"
-        for k in result.study.file.objective
-        if k in outcome.figures
-    )
+    figures = _figures(result.study.file.objective, outcome.figures)
     return f"  {name}: {said}: {figures or outcome.reason}"
 
 

@@ -51,12 +51,15 @@ METHODS = {
 }
 WIDTHS = {
     "pareto.png": 75, "best.png": 78, BEST_STRESS: 75, "convergence.png": 75, "parallel.png": 88,
+    "sweep.png": 80,
 }  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design that was built, and the Pareto front.",
     "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
     "constraint allows.",
+    "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
+    "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
     "best.png": "{sections} in section, over the design that the study began with.",
     BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
@@ -71,19 +74,21 @@ def write_study_reports(
     pictures: Sequence[Path],
     best: BestStress | None = None,
     attached: tuple[Attachment, ...] = (),
-    of_best: Sequence[str] = (),
+    of_designs: Sequence[str] = (),
 ) -> list[Path]:
     """Write report.pdf and report.html, each whole or not at all; their paths.
 
-    With `best` its picture turns in the browser, or the report says why it is missing; `of_best` are the
-    warnings of the best designs.
+    With `best` its picture turns in the browser, or the report says why it is missing; `of_designs` are the
+    warnings of the designs themselves.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
     best = best or BestStress()
-    document = study_document(result, [p.name for p in pictures], attached, best.missing, of_best)
+    document = study_document(
+        result, [p.name for p in pictures], attached, best.missing, of_designs
+    )
     made = reports_of(document, {p.stem: p for p in pictures}, best.views)
     return write_together(folder, made)
 
@@ -93,10 +98,10 @@ def study_document(
     pictures: Sequence[str],
     attached: tuple[Attachment, ...] = (),
     missing: str = "",
-    of_best: Sequence[str] = (),
+    of_designs: Sequence[str] = (),
 ) -> Document:
-    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_best`
-    its warnings."""
+    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_designs`
+    the designs' warnings."""
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
@@ -110,7 +115,7 @@ def study_document(
         *(_not_drawn(missing, result) if missing and BEST_STRESS not in pictures else ()),
         *_failures(result),
         Heading("Scope and limits"),
-        Bullets(tuple(map(worded, notes(result, of_best)))),
+        Bullets(tuple(map(worded, notes(result, of_designs)))),
     )
     return Document(
         title="A study of designs",

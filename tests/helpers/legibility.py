@@ -155,6 +155,8 @@ def _along(path, axes):
     found = [np.empty((0, 2))]
     for corners in path.to_polygons(closed_only=False):
         for a, b in pairwise(corners):
+            if not np.isfinite([a, b]).all():  # a curve is broken there
+                continue
             count = min(int(np.hypot(*(b - a)) // SAMPLE_PX) + 2, 4000)
             found.append(a + np.linspace(0, 1, count)[:, None] * (b - a))
     points = np.concatenate(found)

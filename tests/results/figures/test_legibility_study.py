@@ -17,7 +17,13 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import scatter_of
 from flexspline.pipeline.study.tolerance import ScatteredInput, saltelli
 from flexspline.results.study.best_figure import best_figure
-from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
+from flexspline.results.study.figures import (
+    write_convergence,
+    write_figures,
+    write_parallel,
+    write_pareto,
+)
+from flexspline.results.study.sweep_figure import write_sweep
 from flexspline.results.study.tolerance_figure import write_scatter
 
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
@@ -69,6 +75,80 @@ def test_charts_of_designs_can_be_read(draw, tmp_path: Path) -> None:
     with drawn_figures() as figures:
         draw(tmp_path / "chart.png", result_of("xb1-40", 0.4, 30))
     assert [faults(f) for f in figures] == [[]]
+
+
+HALF_SEAT, MASS = "wave_generator_peak_half_seat_mises_MPa", "flexspline_mass_g"
+
+
+def swept(method: str = "grid", more: str = "") -> StudyResult:
+    """Of one dimension: six designs, the third not built, the last two at the excluded border."""
+    study = study_from(
+        tomllib.loads(
+            f'design = "xb1-40.toml"\n[vary]\n"{WALL}" = {{ min = 0.3, max = 0.5 }}\n{more}'
+            f'[objective]\n"{K}" = "maximize"\n[constraint]\n"{STRESS}" = {{ max = 430.0 }}\n'
+            f'"{HALF_SEAT}" = {{ max = 500.0 }}\n"{MASS}" = {{ max = 500.0 }}\n'
+            f'[run]\nmethod = "{method}"\nevaluations = 6\n'
+        ),
+        EXAMPLES, "test",
+    )  # fmt: skip
+    walls = (0.5, 0.3, 0.34, 0.38, 0.42, 0.46)  # not in their order, as a search has them
+    rows = tuple(
+        Row(
+            i,
+            {WALL: wall, **({LENGTH: 30.0} if more else {})},
+            Outcome(
+                {
+                    K: 1e5 * wall, STRESS: 500.0 - 200 * wall, HALF_SEAT: 300.0 + 400 * wall,
+                    MASS: 60.0 + wall, "wave_generator_peak_at_excluded_border": float(wall > 0.45),
+                }
+            ) if i != 3 else Outcome({}, ("no mesh",)),
+        )
+        for i, wall in enumerate(walls)
+    )  # fmt: skip
+    return StudyResult(study, rows)
+
+
+def test_a_sweep_s_curves_can_be_read(tmp_path: Path) -> None:
+    with drawn_figures() as figures:
+        write_sweep(tmp_path / "sweep.png", swept())
+    assert [faults(f) for f in figures] == [[]]
+
+
+def test_of_one_dimension_each_figure_is_a_curve_with_its_limit_and_the_best(
+    tmp_path: Path,
+) -> None:
+    with drawn_figures() as figures:
+        write_sweep(tmp_path / "sweep.png", swept())
+    stiffness, stress, half, mass = figures[0].axes
+    curve = stiffness.lines[0]
+    assert list(curve.get_xdata()) == [0.3, 0.34, 0.38, 0.42, 0.46, 0.5]
+    gap = np.isnan(curve.get_ydata())  # where a design could not be built
+    assert list(gap) == [False, False, True, False, False, False]
+    marks = {line.get_label(): line for line in stress.lines}
+    assert list(marks["limit"].get_ydata()) == [430.0, 430.0]
+    assert list(marks["at excluded border"].get_xdata()) == [0.46, 0.5]
+    assert list(marks["not allowed"].get_xdata()) == [0.3, 0.34]
+    for axes in (stiffness, stress, half, mass):  # 0.5 mm is the stiffest of those allowed
+        (best,) = [line for line in axes.lines if line.get_label() == "best"]
+        assert list(best.get_xdata()) == [0.5]
+    assert not [line for line in mass.lines if line.get_label() == "limit"]  # it is far away
+    assert "at most 500.0" in mass.get_title(loc="left")
+
+
+@pytest.mark.parametrize(
+    ("method", "more", "names"),
+    [
+        ("grid", "", ["best", "sweep"]),
+        ("optimize", "", ["best", "sweep", "convergence"]),
+        ("grid", f'"{LENGTH}" = {{ values = [30.0] }}\n', ["best", "parallel", "convergence"]),
+    ],
+)
+def test_one_dimension_is_no_matter_for_parallel_axes(
+    method: str, more: str, names: list[str], tmp_path: Path
+) -> None:
+    with drawn_figures():
+        written = write_figures(tmp_path, swept(method, more))
+    assert [path.stem for path in written] == names
 
 
 @pytest.mark.parametrize("inputs", [1, pytest.param(3, marks=pytest.mark.long), 6])

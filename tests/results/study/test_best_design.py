@@ -17,7 +17,8 @@ from flexspline.pipeline.study.run import trial_store_of
 from flexspline.pipeline.study.source import study_name
 from flexspline.pipeline.study.start import start_outcome
 from flexspline.results.report.payload import payload_of
-from flexspline.results.study.best_design import best_warnings, write_best_design
+from flexspline.results.study.best_design import write_best_design
+from flexspline.results.study.design_warnings import design_warnings
 from flexspline.results.study.notes import notes
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
@@ -40,6 +41,7 @@ design = "xb1-40.toml"
 [run]
 method = "tolerance"
 """
+NO_OBJECTIVE = STUDY.replace('[objective]\n"K_b_Nm_per_rad" = "maximize"\n', "")
 
 
 def result_of(*made: tuple[float, float], text: str = STUDY) -> StudyResult:
@@ -64,23 +66,25 @@ def test_the_file_is_the_best_design(tmp_path: Path) -> None:
 def test_where_no_design_is_better_than_another_there_is_no_file(tmp_path: Path) -> None:
     result = result_of((0.55, 400.0), text=TOLERANCE)
     assert write_best_design(tmp_path, result) is None
-    assert not list(best_warnings(result))
+    assert not list(design_warnings(result))
     assert not list(tmp_path.iterdir())
 
 
 def test_a_ring_whose_teeth_do_not_fit_is_said_of_the_best() -> None:
     """19.2 + 0.9 mm is 0.35 mm outside the tooth root, 19.75 mm."""
-    tooth, others = best_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
-    assert tooth.startswith("design 1: tooth-root radius")
+    tooth, others = design_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
+    assert tooth.startswith("design 1 (in 2 of 3 designs): tooth-root radius")
     assert "other listed" not in tooth
     assert others.startswith("other listed designs with warnings: 2; ")
-    assert not list(best_warnings(result_of((0.55, 400.0))))
+    assert not list(design_warnings(result_of((0.55, 400.0))))
 
 
 @pytest.mark.parametrize(("peak", "said"), [(499.0, 0), (501.0, 1)])
 def test_a_peak_above_the_fatigue_limit_is_said(peak: float, said: int) -> None:
     lines = [
-        line for line in best_warnings(result_of((0.55, peak))) if "fatigue_limit_MPa = 500" in line
+        line
+        for line in design_warnings(result_of((0.55, peak)))
+        if "fatigue_limit_MPa = 500" in line
     ]
     assert len(lines) == said
     told = notes(result_of((0.55, peak)), lines)
@@ -88,10 +92,44 @@ def test_a_peak_above_the_fatigue_limit_is_said(peak: float, said: int) -> None:
     assert len(in_report) == said
 
 
-def test_what_the_first_design_is_warned_of_is_not_repeated() -> None:
-    result = result_of((0.9, 400.0))
-    begun = replace(result.study, design=result.design_of(result.rows[0]))
-    assert not list(best_warnings(replace(result, study=begun)))
+def test_designs_above_the_fatigue_limit_are_counted() -> None:
+    """Peaks of other sizes pass the same limit."""
+    line, others = design_warnings(result_of((0.55, 600.0), (0.56, 501.0), (0.54, 499.0)))
+    assert line.startswith("design 1 (in 2 of 3 designs): wave_generator_peak_mises_MPa = 501")
+    assert others.startswith("other listed designs with warnings: 0; ")
+
+
+def begun_with(result: StudyResult, slot: int) -> StudyResult:
+    """The study as if the design of that row were its first."""
+    return replace(result, study=replace(result.study, design=result.design_of(result.rows[slot])))
+
+
+def test_what_the_first_design_is_warned_of_is_said_once_of_the_best() -> None:
+    """Teeth that stand on no ring, as the docs promise, though every design has it."""
+    result = begun_with(result_of((0.9, 400.0), (0.9, 400.0)), 0)
+    (line,) = design_warnings(result)
+    assert line.startswith("design 0 (in 2 of 2 designs): tooth-root radius")
+    assert sum("tooth-root radius" in note for note in notes(result, design_warnings(result))) == 1
+    assert len([*design_warnings(begun_with(result_of((0.9, 400.0)), 0))]) == 1
+
+
+def test_a_warning_of_the_first_design_alone_is_said_as_its_own() -> None:
+    result = begun_with(result_of((0.55, 400.0), (0.9, 400.0)), 1)
+    kept = replace(result, rows=result.rows[:1])
+    assert [w[:50] for w in design_warnings(kept)] == [
+        "the design that the study begins with: tooth-root "
+    ]
+
+
+@pytest.mark.parametrize("text", [TOLERANCE, NO_OBJECTIVE])
+def test_where_none_is_best_the_first_design_s_warnings_are_said(text: str) -> None:
+    result = begun_with(result_of((0.55, 400.0), (0.9, 400.0), (0.91, 400.0), text=text), 1)
+    figures = {"backlash_arcsec.total": 80.0}
+    rows = tuple(replace(r, outcome=Outcome({**r.outcome.figures, **figures})) for r in result.rows)
+    (line,) = design_warnings(replace(result, rows=rows))
+    assert line.startswith(
+        "the design that the study begins with (in 2 of 3 designs): tooth-root radius"
+    )
 
 
 def test_rows_of_a_program_that_means_something_else_are_not_resumed(
@@ -105,7 +143,7 @@ def test_rows_of_a_program_that_means_something_else_are_not_resumed(
 
 
 def test_a_peak_that_no_metal_bears_is_said_as_in_a_run() -> None:
-    (fatigue, elastic) = best_warnings(result_of((0.55, 2500.0)))
+    (fatigue, elastic) = design_warnings(result_of((0.55, 2500.0)))
     assert "fatigue_limit_MPa" in fatigue
     assert "where no metal used in gears is elastic" in elastic
 

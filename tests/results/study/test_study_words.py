@@ -1,6 +1,7 @@
 """What a study's report says when models disagree, and when no design is allowed."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
@@ -33,6 +34,7 @@ from flexspline.results.study.why import (
 WALL = "flexspline.wall_thickness_mm"
 FLAG = "wave_generator_peak_at_excluded_border"
 K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
+HALF_SEAT = "wave_generator_peak_half_seat_mises_MPa"
 STUDY = f"""
 design = "xb1-40.toml"
 [vary]
@@ -48,11 +50,15 @@ method = "sobol"
 NO_OBJECTIVE = STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")
 
 
-def result_of(text: str = STUDY) -> StudyResult:
+def result_of(text: str = STUDY, more: Mapping[str, float] | None = None) -> StudyResult:
     """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
     study = study_from(tomllib.loads(text), EXAMPLES, "test")
     rows = tuple(
-        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i}))
+        Row(
+            i,
+            {WALL: 0.3 + 0.02 * i},
+            Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i, **(more or {})}),
+        )
         for i in range(10)
     )  # fmt: skip
     return StudyResult(study, rows)
@@ -128,6 +134,43 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
     )
     (said,) = limits(result_of(text))
     assert "upper end of the span in wall thickness" in said
+
+
+@pytest.mark.parametrize("columns", ["", "60"])
+def test_the_best_are_listed_with_their_constrained_figures(
+    columns: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the end of the line, or where that is too long below it."""
+    monkeypatch.setenv("COLUMNS", columns)
+    result = result_of(STUDY.replace("300.0", "330.0"))
+    listed = words(result, summary(result) | {"files": []}).splitlines()[1:]
+    between = "\n    " if columns else ", "
+    figures = result.best(1)[0].outcome.figures
+    stress, total = valued(STRESS, figures), valued(TOTAL, figures)
+    assert "\n".join(listed).startswith(
+        f"  design 2: wall thickness {entry(WALL).with_unit(0.34)}: K_b = {valued(K, figures)}{between}"
+        f"σ_WG = {stress}, Δ_bl = {total}"
+    )
+
+
+def test_the_start_is_listed_with_them_and_what_it_breaks() -> None:
+    result = result_of(STUDY.replace("300.0", "330.0"))
+    start = Outcome({K: 4e4, STRESS: 436.0, TOTAL: 80.0})
+    result = replace(result, start=start)
+    line = words(result, summary(result) | {"files": []}).splitlines()[1]
+    figures = f"{valued(K, start.figures)}, σ_WG = {valued(STRESS, start.figures)}, Δ_bl = "
+    assert figures in line
+    assert line.index(figures) < line.index("; breaks a constraint (")
+
+
+def test_a_bound_is_listed_by_its_name() -> None:
+    low = "K_b_bounds_Nm_per_rad[0]"
+    text = STUDY.replace("300.0", "330.0").replace(
+        "[constraint]", f'[constraint]\n"{low}" = {{ min = 1 }}'
+    )
+    result = result_of(text, {low: 2.9e4})
+    said = words(result, summary(result) | {"files": []})
+    assert f"{entry(low).name} = {valued(low, {low: 2.9e4})}" in said
 
 
 def test_the_report_repeats_what_is_asked() -> None:
@@ -228,6 +271,37 @@ def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
     assert "(a constraint of this study): in 3 of 10" in " ".join(notes(replace(result, rows=rows)))
     unasked = STUDY.replace(f'"{STRESS}" = {{ max = 300.0 }}\n', "")
     assert not list(border_warnings(replace(result_of(unasked), rows=rows)))
+
+
+@pytest.mark.parametrize(
+    ("most", "flagged_designs", "said"),
+    [
+        ("330.0", 10, "of 3 designs that keep to this constraint 3 do so by such a figure"),
+        ("330.0", 1, "of 3 designs that keep to this constraint 1 do so by such a figure"),
+        ("300.0", 10, ""),
+    ],
+)
+def test_a_constraint_that_marked_peaks_keep_names_the_figure_to_use(
+    most: str, flagged_designs: int, said: str
+) -> None:
+    result = result_of(STUDY.replace("300.0", most))
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, FLAG: float(r.slot < flagged_designs)}))
+        for r in result.rows
+    )
+    result = replace(result, rows=rows)
+    (line,) = border_warnings(result)
+    assert ("designs that keep to this constraint" in line) is bool(said)
+    assert said in line
+    assert f"the figure to use is {HALF_SEAT}" in line
+    assert f"the figure to use is {HALF_SEAT}" in " ".join(notes(result))
+
+
+def test_a_study_that_asks_for_the_half_seat_figure_is_not_told_to() -> None:
+    text = STUDY.replace("[constraint]", f'[constraint]\n"{HALF_SEAT}" = {{ max = 500.0 }}')
+    result = flagged(result_of(text, {HALF_SEAT: 310.0}))
+    (line,) = border_warnings(result)
+    assert "the figure to use" not in line
 
 
 def test_keys_of_holes_are_named_as_not_followed() -> None:
