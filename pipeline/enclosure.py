@@ -89,7 +89,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     if lower - upper > allowed:
         raise NestingError(names.less, lower, names.more, upper)
     gap = 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad
-    apart = percent(gap) if gap > 0 else "less than they are known to"
+    apart = percent(gap) if gap > 0 else "less than the bounds of either"
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
         lower_Nm_per_rad=min(lower, upper),

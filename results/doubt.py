@@ -8,7 +8,7 @@ from flexspline.results.quantities import quantity
 SOURCES = {
     "youngs_modulus": "Young's modulus",
     "flank_clearance": "flank clearance",
-    "radial_clearance": "bearing clearance",
+    "radial_clearance": "bearing play",
 }
 """What the standard deviation of the backlash may come from."""
 NOT_STATED = "not stated"

@@ -81,8 +81,8 @@ def slope_hint(
     """What the slope may come from; None where it is near the simulated one, or no unit's factor stiffer.
 
     `causes` : those named. Series compliance among them is the slope, with friction and temperature allowed
-    for; else the slope is a straight line's. So it is where stiffness grows with load too: that leaves the
-    share of a compliance wide, and every complete gear has it.
+    for; else the slope is a straight line's. So it is where hardening is named too: the two share the slope
+    in a proportion that the record leaves open, and a compliance of 148 ± 53 % says nothing of their sum.
     """
     if not len(sweep.history):
         return None
@@ -92,8 +92,8 @@ def slope_hint(
     named = [c for c in causes if c.id == SERIES]
     if any(c.own_units for c in named):  # a unit of measurement is all units' under test
         return None
-    hardens = any(c.id == HARDENING for c in causes)
-    slope = _named_slope(named[0]) if named and not hardens else _line_slope(size)
+    shared = any(c.id == HARDENING for c in causes)
+    slope = _named_slope(named[0]) if named and not shared else _line_slope(size)
     if slope.ratio <= 0:
         return None
     units = unit_hints(size, sweep, slope)

@@ -24,15 +24,21 @@ from flexspline.results.numbers import figures_text
 from flexspline.results.sentences import capital
 from flexspline.results.terminal import prose, row
 
+BETWEEN = 2
+"""Letters between two columns, beside the one that parts all cells."""
+
 
 def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     """Verdict, causes, gain and what to measure next."""
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
     lines += prose(f"{verdict_heading(diagnosis)} ({outcome.verdict}). {summary(diagnosis)}")
-    for cause in outcome.causes:
-        size, sure = magnitude_words(cause), sure_words(cause)
-        lines += row((capital(cause_title(cause)), size, sure), (62, 28))
+    cells = [(capital(cause_title(c)), magnitude_words(c), sure_words(c)) for c in outcome.causes]
+    widths = [
+        max(len(cell) for cell in column) + BETWEEN for column in list(zip(*cells, strict=True))[:2]
+    ]
+    for cause, found in zip(outcome.causes, cells, strict=True):
+        lines += row(found, widths)
         if cause.alternatives:
             lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -58,13 +59,14 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
     if found.outcome == "consistent":
         return (
             f"the gear's curve fits the middle of the loop: {found.remainder_arcsec:.2g} arcsec rms at "
-            f"{found.places} torques, chi square {found.chi_square:.0f}",
+            f"{found.places} torques, no more than its readings scatter",
         )
     if found.outcome == "unknown":
         return (
             f"no one or two inputs of the gear explain the {found.remainder_arcsec:.3g} arcsec rms that its "
             f"curve leaves at {found.places} torques; nearest is {best.key} = {best.value:.3g} {best.unit}, "
-            f"chi square {best.chi_square:.0f}",
+            f"with which the curve still lies {_deviations_off(best, found.places):.2g} standard deviations "
+            "off the readings (root mean square)",
         )
     if found.outcome == "pair":
         first, *more = found.pairs
@@ -85,6 +87,11 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
         said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
     return tuple(said)
+
+
+def _deviations_off(one: FittedInput, places: int) -> float:
+    """Root mean square over the torques, one of which the input is fitted to; 1 is what scatter leaves."""
+    return math.sqrt(one.chi_square / (places - 1))
 
 
 def _both(pair: FittedPair) -> str:

@@ -50,9 +50,10 @@ def odds_words(nats: float) -> str:
     return f"about {grouped(float(f'{10**exponent:.1g}'), 0)} to 1"
 
 
-def unit_words(unit: str) -> str:
-    """A unit for print; a ratio has none."""
-    return "" if unit == "1" else unit
+def factor_words(cause: NamedCause) -> str:
+    """Of a ratio, what is so many times what; "" of a size that has a unit."""
+    known = known_causes().get(cause.id)
+    return known.factor if known and cause.unit == "1" else ""
 
 
 def plus_minus(value: float, std: float) -> str:
@@ -71,7 +72,8 @@ def magnitude_words(cause: NamedCause) -> str:
         return f"+{plus_minus(*cause.stiffer_pct)} %"
     where = " at T = 0" if _is_wider(cause) else ""
     size = plus_minus(cause.magnitude, cause.magnitude_std)
-    return f"{size} {unit_words(cause.unit)}".rstrip() + where
+    unit = factor_words(cause) if cause.unit == "1" else cause.unit
+    return f"{size} {unit}".rstrip() + where
 
 
 def _is_wider(cause: NamedCause) -> bool:

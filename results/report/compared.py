@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.data_used import rows_used
+from flexspline.results.diagnosis.words import plus_minus
 from flexspline.results.numbers import figures_text, grouped
 
 
@@ -70,7 +71,8 @@ def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     p = diagnosis.prediction
     if isinstance(diagnosis.measurement, Specimens):
         return _compared_specimens(diagnosis, used)
-    gap = f"a gap of {_with_std(grouped(p.gap_arcsec, 1), p.gap_std_arcsec, 1)} arcsec"
+    stated = plus_minus(p.gap_arcsec, p.gap_std_arcsec) if p.gap_std_arcsec else ""
+    gap = f"a gap of {stated or grouped(p.gap_arcsec, 1)} arcsec"
     if p.bend is not None:
         most = max(map(abs, p.bend.angle_arcsec))
         return (
@@ -87,13 +89,10 @@ def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     )
 
 
-def _with_std(value: str, std: float, places: int) -> str:
-    return f"{value} ± {grouped(std, places)}" if std else value
-
-
 def _twist(p: Prediction) -> str:
-    value = figures_text(p.compliance, 4)
-    return f"{value} ± {figures_text(p.compliance_std, 2)}" if p.compliance_std else value
+    """As the calibrated one is printed beside it."""
+    stated = plus_minus(p.compliance, p.compliance_std) if p.compliance_std else ""
+    return stated or figures_text(p.compliance, 4)
 
 
 def _what_counts(p: Prediction) -> str:

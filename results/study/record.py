@@ -14,6 +14,7 @@ from flexspline.pipeline.study.verified import Verified
 from flexspline.results.numbers import signed
 from flexspline.results.quantities import BY_KEY
 from flexspline.results.study.failures import FailureReason, causes, failure_lines
+from flexspline.results.study.gains import gain_text, gains_shown, least_gain
 from flexspline.results.study.labels import LISTED_DESIGNS, entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
@@ -213,8 +214,8 @@ def _shares(s: Scatter, i: int) -> list[str]:
         f"Sobol index {first}",
         f"total {index_text(s.indices.total[i], s.indices.total_ends[i])}",
     ]
-    for t in s.tightened:
-        if t.key == s.inputs[i].key and t.factor == 0.5:
-            less = f"{max(0.0, t.bought):.2f} {entry(s.key).unit}"
-            said.append(f"with half its scatter the 95 % range is {less} narrower")
+    half = gains_shown(s).get((s.inputs[i].key, 0.5))
+    if half is not None:
+        less = f"{gain_text(half, least_gain(s))} {entry(s.key).unit}"
+        said.append(f"with half its scatter the 95 % range is {less} narrower")
     return said

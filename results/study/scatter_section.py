@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Scatter
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
+from flexspline.results.study.gains import gain_text, gains_shown, least_gain
 from flexspline.results.study.labels import entry
 
 MOST_EVALUATIONS = 1_000_000
@@ -36,9 +37,11 @@ def scatter_section(s: Scatter) -> Iterable[Block]:
         tuple(_inputs(s)),
     )
     if s.tightened:
+        least = least_gain(s)
+        hidden = f" Sampling hides gains of less than {least:.1f} {q.unit}." if least else ""
         yield Paragraph(
             f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that "
-            "input alone scatters less."
+            f"input alone scatters less.{hidden}"
         )
 
 
@@ -75,9 +78,9 @@ def index_text(value: float, ends: np.ndarray) -> str:
 
 def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
     """A line for each input, the most important first."""
+    gains, least = gains_shown(s), least_gain(s)
     for i in s.order:
         x = s.inputs[i]
-        bought = {t.factor: t.bought for t in s.tightened if t.key == x.key}
         unit = entry(x.key)
         spread = x.std if x.normal else x.high - x.nominal
         kind = "s =" if x.normal else "±"
@@ -86,5 +89,5 @@ def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
             unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
             *((index_text(known.first[i], known.first_ends[i]),
                index_text(known.total[i], known.total_ends[i])) if known else ()),
-            *(f"{max(0.0, bought[f]):.1f}" for f in (TIGHTENING_FACTORS if s.tightened else ())),
+            *(gain_text(gains[x.key, f], least) for f in (TIGHTENING_FACTORS if s.tightened else ())),
         )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.study.indices import Indices
 from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Scatter
+from flexspline.results.study.gains import gains_drawn
 from flexspline.results.study.labels import axis_label, entry, long_name
 from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
@@ -46,10 +47,17 @@ def _distribution(axes: Axes, s: Scatter) -> None:
     axes.axvspan(s.low, s.high, color=PALETTE[3], alpha=0.45, lw=0, zorder=0)
     axes.axvline(s.mean, color=ACCENT, lw=1.6)
     q = entry(s.key)
-    source = "by the surface" if s.surface else f"{len(s.values)} designs"
+    source = "by a quadratic fit" if s.surface else f"{len(s.values)} designs"
     axes.set_title(f"95 % from {q.range_text(s.low, s.high)} {q.unit}, {source}", color=INK)
     axes.set_xlabel(axis_label(s.key))
     axes.set_ylabel("% of gears")
+    axes.margins(y=0.2)  # room for the mean's name, above the highest bar
+    right = s.mean < sum(axes.get_xlim()) / 2  # where there is more room for it
+    axes.annotate(
+        f"mean {q.text(s.mean)}", (s.mean, 1), (6 if right else -6, -4),
+        xycoords=("data", "axes fraction"), textcoords="offset points",
+        color=ACCENT, ha="left" if right else "right", va="top",
+    )  # fmt: skip
 
 
 def _indices(axes: Axes, s: Scatter, indices: Indices, order: np.ndarray) -> None:
@@ -71,10 +79,10 @@ def _indices(axes: Axes, s: Scatter, indices: Indices, order: np.ndarray) -> Non
 
 def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
     y = np.arange(len(order))
-    by = {(t.key, t.factor): t.bought for t in s.tightened}
+    by = gains_drawn(s)
     shades = (PALETTE[3], PALETTE[2], PALETTE[1], PALETTE[0])
     for i in range(len(TIGHTENING_FACTORS) - 1, -1, -1):
-        values = [max(0.0, by[s.inputs[j].key, TIGHTENING_FACTORS[i]]) for j in order]
+        values = [by[s.inputs[j].key, TIGHTENING_FACTORS[i]] for j in order]
         said = f"× {TIGHTENING_FACTORS[i]:g}" if TIGHTENING_FACTORS[i] else "perfect"
         axes.barh(y, values, 0.62, color=shades[i], label=said)
     axes.set_yticks(y, [""] * len(order))

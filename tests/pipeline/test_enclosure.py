@@ -106,7 +106,7 @@ def test_estimates_may_cross_by_both_half_widths(
     else:
         found = between(cut, whole, OF_HOLES)
         assert found.bounds_Nm_per_rad == tuple(sorted((cut_K - 10.0, 1010.0)))
-        assert "differ by less than they are known to" in found.method
+        assert "differ by less than the bounds of either" in found.method
 
 
 def known(K: float, guaranteed: bool) -> Stiffness:

@@ -45,7 +45,7 @@ def test_a_report_without_uncertainty_says_so(tmp_path):
 
 def test_a_report_says_which_part_is_stated(tmp_path):
     for text in printed(PART, tmp_path):
-        assert letters("with Young's modulus and bearing clearance not stated") in text
+        assert letters("with Young's modulus and bearing play not stated") in text
         assert letters("young's") not in text
         assert letters("± 11.0 (1σ)") in text
         assert not ZERO.search(text)

@@ -87,6 +87,8 @@ class Cause(ABC):
     """Of the magnitude."""
     ratio: ClassVar[str] = ""
     """Of a magnitude in % or 1: which ratio it is (docs/contract.md)."""
+    factor: ClassVar[str] = ""
+    """Of a magnitude in 1: what a reader needs after the number, as "times as …"."""
     none: ClassVar[float] = 0.0
     """The magnitude of no effect."""
     passes_none: ClassVar[bool] = True

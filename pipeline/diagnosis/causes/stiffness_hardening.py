@@ -68,6 +68,7 @@ class StiffnessHardening(Cause):
     spread_share = 0.3
     """Soft wind-up is up to a third of the twist in catalogues."""
     ratio = "stiffness near the largest torque over that at 5 to 20 % of it"
+    factor = "times as stiff at high torque"
     none = 1.0
     elastic = True
     shape_doubt = 0.008

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 
+DRAWN_APART = """
+        Where a channel has few values the branches are drawn apart: rising torque left of its value, falling
+        torque right of it."""
+"""Of every figure of residuals over channels: its points stand where no row was recorded."""
 CAPTIONS = {
     "measured_and_predicted": """
         Above, the measured angle on the simulated line; below, their difference. A difference inside
         the band is what the design's own uncertainty allows; a pattern in it is not.""",
-    "residual_simulation": """
+    "residual_simulation": f"""
         Residual of the simulation, its stiffness and gap calibrated by up to two standard deviations of
         the design's uncertainty, against every recorded channel. With no cause missing, all points lie in
         the grey band and the lines on zero. Lines apart for rising and falling torque mean friction or
-        lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes.""",
+        lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes.
+        {DRAWN_APART}""",
     "causes": """
         Each part of the extended model alone. Pale: the measurement less all other parts. Dark: the
         model. The pale points should scatter evenly about the dark ones.""",
@@ -22,12 +27,12 @@ CAPTIONS = {
     "held_out": """
         Prediction error on rows not used in the fit. Where the last bar reaches the dashed line, the
         extended model predicts as well as the instrument reads.""",
-    "residual_model": """
+    "residual_model": f"""
         Residual of the best model: the points should fill the grey band evenly and the lines stay near
-        zero. A panel whose channel is tested says what the test finds.""",
-    "residual_unknown": """
+        zero. A panel whose channel is tested says what the test finds. {DRAWN_APART}""",
+    "residual_unknown": f"""
         Residual of the best model, unnamed structure included. The structure that no cause
-        explains lies in: {where}; the figure of the model's parts shows its course.""",
+        explains lies in: {{where}}; the figure of the model's parts shows its course. {DRAWN_APART}""",
     "envelope": f"""
         The angle between −T and +T of each unit. The band holds {COVERED_WORDS} units that are as the
         design says; the design's clearances and stiffness do not explain a unit

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import (
     cause_title,
+    factor_words,
     magnitude_words,
     odds_words,
     sure_words,
@@ -77,14 +78,16 @@ def _channel_of(owner: str) -> str:
 def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
     known = known_causes()[cause.id]
     channel = shown.channel(known.shows_over)
+    factor = factor_words(cause)  # a line of its own: there is no room beside the number
     lines = [
-        magnitude_words(cause),
+        magnitude_words(cause).removesuffix(f" {factor}"),
+        *([factor] if factor else []),
         f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
         f"{sure_words(cause)}:",
         odds_words(cause.evidence_nats),
     ]
     if cause.alternatives:
-        lines[2:] = ["not decided: rivals", "explain it as well"]
+        lines[-2:] = ["not decided: rivals", "explain it as well"]
     return ContributionPanel(
         cause.id,
         _short(cause_title(cause)),

@@ -36,6 +36,8 @@ LEVELS = 16
 """Distinct values up to which a channel is drawn level by level: as many as bins, about."""
 DODGE = 0.012
 """Share of a channel's range by which the branches stand apart where it has levels."""
+APART = " (branches apart)"
+"""Beside the name of such a channel; the caption says which branch goes where."""
 CLUSTER_GAP_SHARE = 0.04
 """Share of a channel's range that, empty, parts clusters."""
 
@@ -146,7 +148,8 @@ def _panel(
                 x + moved, y, color=colour, lw=1.8, ls=style if channel.key != "torque_Nm" else "-"
             )
     axes.set_ylim(-high, high)
-    axes.set_xlabel(channel.label)
+    # values that no row has would be read off the axis, where nothing says that points were moved
+    axes.set_xlabel(f"{channel.label}{APART * bool(moved)}")
     axes.grid(axis="y")
     if channel.levels:
         axes.set_xticks(range(len(channel.levels)), channel.levels)

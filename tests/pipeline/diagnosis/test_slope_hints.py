@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
@@ -121,6 +122,43 @@ def test_a_rough_slope_that_a_fault_may_bring_suggests_no_unit(tmp_path: Path) -
     read = sweep(tmp_path, torque_in(1.36))
     assert slope_hint(read, predicted(), (series(36.0, 0.4),)) is not None  # ft·lbf
     assert slope_hint(read, predicted(), (series(36.0, 4.0),)) is None
+
+
+def soft_wind_up(softer: float) -> str:
+    """A gear of so many times the compliance, with a wind-up of 50 arcsec from side to side and a friction
+    loop 10 arcsec wide at ± 16 N·m and less, as a file; readings scatter by 0.8 arcsec, fixed seed."""
+    noise = np.random.default_rng(1)
+    lines, friction, before, time = ["cycle,time_s,torque_Nm,angle_arcsec"], 0.0, 0.0, 0
+    for cycle in range(1, 10):
+        up = np.linspace(0, (5.3, 9.6, 16.0)[(cycle - 1) % 3], 30)
+        for torque in np.concatenate([up, up[-2::-1], -up[1:], -up[-2::-1]]):
+            friction = float(np.clip(friction + 6 * (torque - before), -5, 5))
+            soft = np.sign(torque) * (30 + 25 * (1 - np.exp(-abs(torque) / 2)))
+            angle = softer * PARTS.compliance * torque + soft - friction + noise.normal(0, 0.8)
+            lines.append(f"{cycle},{time},{torque:.4f},{angle:.3f}")
+            before, time = torque, time + 2
+    return "\n".join(lines) + "\n"
+
+
+XB1 = load_design(EXAMPLES / "xb1-40.toml")
+PARTS = prediction_of(XB1, 31_300.0, 44_000.0)
+
+
+@pytest.mark.parametrize(
+    ("softer", "hinted"), [(1.0, False), (1.15, False), (1.3, False), (2.0, True), (2.5, True)]
+)
+def test_a_soft_wind_up_beside_a_compliance_hides_no_complete_gear(
+    softer: float, hinted: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "rig.csv"
+    path.write_text(soft_wind_up(softer), encoding="utf-8")
+    found = diagnose_file(XB1, path, 31_300.0, 44_000.0)
+    named = {c.id: c for c in found.outcome.causes}
+    assert "stiffness_hardening" in named
+    if hinted:  # each one's share of the slope is open, not their sum
+        compliance = named["series_compliance"]
+        assert compliance.magnitude < 3 * compliance.magnitude_std
+    assert ("--against gear" in summary(found)) == hinted
 
 
 @pytest.mark.parametrize(("softer", "unit"), [(1.5, ""), (9.80665, "kgf·m")])

@@ -10,6 +10,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -27,10 +28,12 @@ from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.console import diagnosis_table
+from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.record import diagnosis_record
 from flexspline.results.diagnosis.summary import left_out, summary
 from flexspline.results.records import as_json
+from flexspline.results.report.compared import compared
 from flexspline.results.report.diagnosis import diagnosis_document
 from flexspline.results.studio.job_summary import job_summary
 
@@ -96,6 +99,31 @@ def test_a_ratio_says_of_what(cause: Cause) -> None:
     diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(1.0, 1.0, 0.0, 0.0), found)
     (note,) = (n for n in notes(diagnosis) if n.startswith("size of"))
     assert note == f"size of {cause.title_at(2.0)}: {cause.ratio}"
+    if cause.unit == "1":  # a number alone says nothing
+        assert cause.factor
+        assert f"2.00 ± 0.50 {cause.factor}." in summary(diagnosis)
+
+
+def test_sizes_stand_below_each_other_however_long_a_title_is() -> None:
+    causes = (named("kinematic_error", 9.0, "arcsec"), named("friction_hysteresis", 12.0, "arcsec"))
+    found = DiagnosisOutcome("named", (*causes, named("stiffness_hardening", 1.3, "1")))
+    diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(10.0, 0.2, 60.0, 5.0), found)
+    rows = [r for r in diagnosis_table(diagnosis, Path("out")).splitlines() if "beyond doubt" in r]
+    assert len(rows) == 3
+    assert len({row.index(" ± ") for row in rows}) == 2  # 9.00 and 1.30, 12.00
+    assert len({row.index("beyond doubt") for row in rows}) == 1
+
+
+def test_a_simulated_gap_is_written_alike_on_a_page() -> None:
+    prediction = Prediction(6.0132, 0.12, 57.55, 10.02)
+    calibration = Calibration(Estimate(37.9, 2.0), False, Estimate(6.2, 0.05))
+    outcome = DiagnosisOutcome("consistent")
+    diagnosis = Diagnosis(DESIGN, KINDS["sweep"], prediction, outcome)
+    said = compared(diagnosis, StiffnessPair(66_783.0, 71_150.0))
+    calibrated = calibrated_sentences(calibration, prediction, outcome)
+    for words in ("58 ± 10", "6.01 ± 0.12"):
+        assert words in said
+        assert words in calibrated
 
 
 def test_what_specimens_leave_is_in_percent_everywhere() -> None:

@@ -16,8 +16,10 @@ from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.data_used import data_record
+from flexspline.results.figures.diagnosis.captions import caption
 from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
+from flexspline.results.figures.diagnosis.panels import write_channels
 from flexspline.results.figures.diagnosis.seen import seen
 
 CUP = EXAMPLES / "xb1-40.toml"
@@ -134,6 +136,22 @@ def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
     assert result.exit_code == 0, result.stderr
     assert len(found) >= 2
     assert [fault for figure in found for fault in faults(figure)] == []
+
+
+def test_points_that_are_moved_are_said_to_be(tmp_path: Path) -> None:
+    """Five cycles, each at one angle of the wave generator: both branches would hide each other there."""
+    path = sweep(tmp_path / "m.csv", many, columns=("temperature_C", "input_angle_deg"))
+    found = diagnose_file(load_design(CUP), path, 31329, 43339)
+    shown = seen(found)
+    assert shown is not None
+    with drawn_figures() as figures:
+        write_channels(tmp_path / "r.png", shown, shown.calibrated, "Residual")
+    labels = {axes.get_xlabel() for axes in figures[0].axes}
+    assert {label for label in labels if label.endswith("(branches apart)")} == {
+        "load cycle (branches apart)", "wave generator angle in ° (branches apart)"
+    }  # fmt: skip
+    for name in ("residual_simulation", "residual_model", "residual_unknown"):
+        assert "rising torque left of its value" in caption(name, where="torque")
 
 
 def test_the_legend_counts_each_kind_of_row_that_was_not_used(tmp_path: Path) -> None:

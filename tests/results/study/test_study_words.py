@@ -4,23 +4,29 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.indices import Indices
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Attribution, Scatter, Tightened
+from flexspline.pipeline.study.tolerance import ScatteredInput
 from flexspline.pipeline.study.verified import Check, Verified
 from flexspline.results.report.document import Pictures, Table
 from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
+from flexspline.results.study.gains import gains_drawn, gains_shown
 from flexspline.results.study.labels import entry, valued
 from flexspline.results.study.notes import border_warnings, notes, unsettled, wide_bounds
 from flexspline.results.study.question import question
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
+from flexspline.results.study.scatter_section import scatter_section
 from flexspline.results.study.sensitivity import lines
 from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
@@ -48,6 +54,47 @@ design = "xb1-40.toml"
 method = "sobol"
 """
 NO_OBJECTIVE = STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")
+
+
+def tolerance_of(gains: dict[str, tuple[float, ...]]) -> Scatter:
+    """95 % ranges narrower by so many arcsec [at 0.75, 0.5, 0.25 and none of each input's tolerance]."""
+    own = tuple(ScatteredInput(key, 1.0, 0.1, 0.9, 1.1, False) for key in gains)
+    tight = tuple(
+        Tightened(key, factor, 80.0 - gain, gain)
+        for key, each in gains.items()
+        for factor, gain in zip(TIGHTENING_FACTORS, each, strict=True)
+    )
+    one = np.array([0.5] * len(gains))
+    ends = np.stack([one, one], 1)
+    shares = Attribution(Indices(one, ends, one, ends))
+    values = np.linspace(60.0, 140.0, 16)
+    return Scatter(TOTAL, own, values, values, 60.0, 140.0, shares, tight)
+
+
+def test_gains_of_tighter_tolerances_do_not_fall_in_print() -> None:
+    sampled = {
+        "material.flexspline.youngs_modulus_GPa": (0.25, 0.19, 0.06, 0.03),
+        WALL: (10.3, 19.6, 19.5, 28.0),
+    }
+    scatter = tolerance_of(sampled)
+    table = next(b for b in scatter_section(scatter) if isinstance(b, Table))
+    assert [list(row[-4:]) for row in table.rows] == [
+        ["< 0.3"] * 4,  # one falls by 0.22
+        ["10.3", "19.6", "19.6", "28.0"],  # 19.55 twice
+    ]
+    (said,) = [str(b) for b in scatter_section(scatter) if "last four columns" in str(b)]
+    assert "Sampling hides gains of less than 0.3 arcsec." in said
+    assert set(gains_drawn(scatter)) == set(gains_shown(scatter))
+    assert [gains_drawn(scatter)[k] for k in gains_drawn(scatter)][:4] == [0.0] * 4
+
+
+def test_gains_that_rise_as_they_should_are_printed_as_sampled() -> None:
+    table = next(
+        b
+        for b in scatter_section(tolerance_of({WALL: (0.0, 0.1, 0.2, 0.3)}))
+        if isinstance(b, Table)
+    )
+    assert list(table.rows[0][-4:]) == ["0.0", "0.1", "0.2", "0.3"]
 
 
 def result_of(text: str = STUDY, more: Mapping[str, float] | None = None) -> StudyResult:

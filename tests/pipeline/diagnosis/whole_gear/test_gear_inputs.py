@@ -106,6 +106,8 @@ def test_the_gear_as_drawn_leaves_nothing_to_explain(as_drawn: Diagnosis) -> Non
     assert found is not None
     assert found.outcome == "consistent"
     assert "named" not in gear_inputs_record(found)
+    (said,) = gear_inputs_notes(found)
+    assert said.endswith("no more than its readings scatter")
 
 
 def test_an_input_that_moves_nothing_has_no_value(
@@ -129,7 +131,11 @@ def test_a_twist_of_another_kind_is_not_named(bent: Diagnosis) -> None:
     found = bent.gear_inputs
     assert found is not None
     assert found.outcome == "unknown"
-    assert "no one or two inputs" in gear_inputs_notes(found)[0]
+    (said,) = gear_inputs_notes(found)
+    assert "no one or two inputs" in said
+    off = (found.fitted[0].chi_square / (found.places - 1)) ** 0.5  # of a chi square: 1 in the mean
+    assert f"lies {off:.2g} standard deviations off the readings" in said
+    assert off > 1.5
 
 
 def test_what_noise_hides_has_rivals(chain: Chain, tmp_path: Path) -> None:
