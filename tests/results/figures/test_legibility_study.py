@@ -178,4 +178,7 @@ def test_a_tolerance_study_s_chart_can_be_read(kind: str, inputs: int, tmp_path:
         )
     with drawn_figures() as figures:
         write_scatter(tmp_path / "tolerance.png", scatter)
+    above = figures[0].axes[0]  # the red line has a name, the range a source
+    assert [t.get_text() for t in above.texts] == [f"mean {scatter.mean:.1f}"]
+    assert ("quadratic fit" in above.get_title("left")) == bool(scatter.surface)
     assert [faults(f) for f in figures] == [[]]
