@@ -74,7 +74,7 @@ def contact_stiffness(
         symmetry=supported.symmetry,
         method=(
             f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} times K with the seat"
-            f" held; bounds: those of that K, times the ratio's {_doubt_of(len(found.ratios))}"
+            f" held; bounds: those of that K, widened {_doubt_of(len(found.ratios))}"
         ),
         levels=tuple(found.levels),
         shortfall=shortfall,
@@ -131,7 +131,9 @@ def settling(ratios: Sequence[float]) -> tuple[float, float]:
 
 
 def _doubt_of(meshes: int) -> str:
-    return f"doubt by {meshes} meshes" if meshes > 1 else "bounds, a free seat's and 1"
+    if meshes > 1:
+        return f"by what the ratio still changes between {meshes} meshes"
+    return "from the ratio of a free seat to 1, for there is one mesh"
 
 
 def lift_off_forces(seat: SeatCompliance) -> np.ndarray:

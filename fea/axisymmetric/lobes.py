@@ -28,6 +28,7 @@ from flexspline.fea.refinement import refinements
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
+from flexspline.geometry.percent import percent
 
 LOBE_HALF_WIDTH = pi / 6
 """φ0: torque enters over ±30° about each end of the major axis (docs/contract.md)."""
@@ -154,7 +155,7 @@ class _RevolvedLobes:
             model="axisymmetric",
             symmetry="body of revolution",
             method=(
-                f"even Fourier harmonics 0 to {last}, the rest bounded by {missing:.1e} of K; recovery "
+                f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery "
                 f"estimate (Zienkiewicz-Zhu) on {len(self.estimate.levels)} meshes, scaled by "
                 f"{self.estimate.scale:.2f}"
             ),

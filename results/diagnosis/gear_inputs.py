@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -55,7 +56,6 @@ def gear_inputs_record(found: GearIdentification) -> dict[str, Any]:
 
 def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
     """One sentence a finding."""
-    best = found.fitted[0]
     if found.outcome == "consistent":
         return (
             f"the gear's curve fits the middle of the loop: {found.remainder_arcsec:.2g} arcsec rms at "
@@ -64,9 +64,7 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
     if found.outcome == "unknown":
         return (
             f"no one or two inputs of the gear explain the {found.remainder_arcsec:.3g} arcsec rms that its "
-            f"curve leaves at {found.places} torques; nearest is {best.key} = {best.value:.3g} {best.unit}, "
-            f"with which the curve still lies {_deviations_off(best, found.places):.2g} standard deviations "
-            "off the readings (root mean square)",
+            f"curve leaves at {found.places} torques" + "".join(_nearest(found)),
         )
     if found.outcome == "pair":
         first, *more = found.pairs
@@ -80,6 +78,7 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
                 "them itself"
             )
         return tuple(said)
+    best = found.fitted[0]
     said = [
         f"{_value(best)} explains what the gear's curve leaves, all else as drawn{_gain(found)}"
     ]
@@ -87,6 +86,16 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
         said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
     return tuple(said)
+
+
+def _nearest(found: GearIdentification) -> Iterator[str]:
+    """Of the inputs that move the curve, if any does."""
+    for best in found.fitted[:1]:
+        yield (
+            f"; nearest is {best.key} = {best.value:.3g} {best.unit}, with which the curve still lies "
+            f"{_deviations_off(best, found.places):.2g} standard deviations off the readings (root mean"
+            " square)"
+        )
 
 
 def _deviations_off(one: FittedInput, places: int) -> float:

@@ -119,11 +119,14 @@ def test_an_input_that_moves_nothing_has_no_value(
     found = identification.gear_inputs(DESIGN, chain, as_drawn.sweep)
     assert found is not None
     assert (found.outcome, found.fitted) == ("consistent", ())
+    assert "no more than its readings scatter" in gear_inputs_notes(found)[0]
     assert bent.sweep is not None
     found = identification.gear_inputs(DESIGN, chain, bent.sweep)
     assert found is not None
     assert found.outcome == "unknown"
     assert json.dumps(gear_inputs_record(found), allow_nan=False)
+    (said,) = gear_inputs_notes(found)
+    assert "nearest" not in said
 
 
 def test_a_twist_of_another_kind_is_not_named(bent: Diagnosis) -> None:
