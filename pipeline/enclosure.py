@@ -127,12 +127,12 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     lower, upper = min(lower, upper), max(lower, upper)
     if half > enclosure.half_width:
         K = enclosure.K_Nm_per_rad
-        how = f"the middle of its bounds (± {percent(half)} without them: {solid.method})"
+        how = f"middle of the bounds (± {percent(half)} without them: {solid.method})"
     elif enclosure.lower_Nm_per_rad <= solid.K_Nm_per_rad <= enclosure.upper_Nm_per_rad:
         K, how = solid.K_Nm_per_rad, solid.method
     else:
         K = min(max((lower + upper) / 2, enclosure.lower_Nm_per_rad), enclosure.upper_Nm_per_rad)
-        how = f"the middle of what both bounds have in common; {solid.method}"
+        how = f"middle of what both bounds have in common: {solid.method}"
     if narrow:
         lower, upper = enclosure.bounds_Nm_per_rad
     return replace(
@@ -141,7 +141,7 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
         lower_Nm_per_rad=lower,
         upper_Nm_per_rad=upper,
         guaranteed=narrow and enclosure.guaranteed,
-        method=f"K: {how}. Bounds: {'' if narrow else 'those of that K, within those '}{enclosure.method}",
+        method=f"{how}; {'bounds' if narrow else 'within'}: {enclosure.method}",
         shortfall=MET if enclosure.half_width <= tolerance else solid.shortfall,
         proven_Nm_per_rad=None if narrow else proven_by(enclosure),
     )

@@ -26,7 +26,7 @@ from flexspline.pipeline.enclosed_part import (
 )
 from flexspline.pipeline.enclosure import TwoBodies, answered_within, check_against
 from flexspline.pipeline.lift_off_with_holes import resting_with_holes
-from flexspline.pipeline.lobes_by_torsion import lobes_by_torsion
+from flexspline.pipeline.lobes_by_torsion import entry_doubt, lobes_by_torsion
 from flexspline.pipeline.part_stiffness import (
     part_stiffness,
     revolved_stiffness,
@@ -39,9 +39,9 @@ from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
 NO_BETTER = 1.5
-"""K_b's half-width under the lobes over that in torsion, up to which no solid model of the lobes follows
-where torsion's missed the tolerance: its bounds are 0.9 to 3.1 times torsion's on one mesh
-(`solid_lobes.USUAL_OVER_TORSION`)."""
+"""Where K_b in torsion misses the tolerance by no more than this factor, so may K_b under the lobes that
+follows from it miss torsion's half-width. A solid model of the lobes, whose bounds are 0.9 to 3.1 times
+torsion's on one mesh (`solid_lobes.USUAL_OVER_TORSION`), is not solved for the little that is missing."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def _of_holed(
             found = answered_within(
                 found, lambda: _by_torsion(flexspline, K_b, revolved), tolerance
             )
-            if K_b.half_width > tolerance:
+            if tolerance < K_b.half_width <= NO_BETTER * tolerance:
                 enough = NO_BETTER * K_b.half_width
     if found.half_width <= enough:
         return found
@@ -119,11 +119,11 @@ def _of_holed(
 def _by_torsion(flexspline: PartModel, K_b: Stiffness, revolved: PartSolver) -> Stiffness:
     """K_b under the lobes from that in torsion and the two bodies of revolution."""
     whole = by_two_bodies(flexspline, revolved_stiffness, lambda bodies: bodies.whole, expected=0.0)
-    bolts, tolerance = flexspline.part.bolts, flexspline.tolerance
-    holes = len(bolts.centres) if bolts else 0
+    f, tolerance = flexspline.context.design.flexspline, flexspline.tolerance
+    entry = entry_doubt(f)
 
     def answer(bodies: TwoBodies) -> Stiffness:
-        return lobes_by_torsion(K_b, whole, bodies, holes, tolerance)
+        return lobes_by_torsion(K_b, whole, bodies, f.bolt_count, tolerance, entry)
 
     return by_two_bodies(flexspline, revolved, answer, most_pct=FIRST_BOUNDS_PCT)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from flexspline.fea.solid.deck import torsion_deck
 from flexspline.fea.solid.unfold import Parity
@@ -24,9 +23,6 @@ from flexspline.pipeline.temporary_files import scratch_folder, temporary_folder
 from flexspline.results.atomic import named, write_bytes
 from flexspline.results.mesh_files import PatchedMesh, write_mesh
 from flexspline.results.plain_letters import plain
-
-if TYPE_CHECKING:
-    import cadquery as cq
 
 STL_CHORD_ERROR_MM = 0.01
 """Below what a printer or a viewer resolves."""
@@ -48,7 +44,8 @@ def write_exports(
     for part in context.design.parts:
         with context.progress.stage(f"CAD of the whole {part.name}"):
             solid = build_solid(part)
-            done.append(_write_step(context.design, part, solid, folder))
+            step = partial(write_step, solid, name=_product(context.design, part))
+            done.append(write_whole(folder / f"{part.name}.step", step))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
             done.append(write_whole(folder / f"{part.name}.stl", stl))
     for model in models:
@@ -65,13 +62,14 @@ def write_step_files(design: Design, folder: Path, progress: Progress) -> list[P
     done = []
     for part in design.parts:
         with progress.stage(f"CAD of the whole {part.name}"):
-            done.append(_write_step(design, part, build_solid(part), folder))
+            step = partial(write_step, build_solid(part), name=_product(design, part))
+            done.append(write_whole(folder / f"{part.name}.step", step))
     return done
 
 
-def _write_step(design: Design, part: Part, solid: cq.Solid, folder: Path) -> Path:
-    name = plain(f"{design.name}, {part.name}")
-    return write_whole(folder / f"{part.name}.step", partial(write_step, solid, name=name))
+def _product(design: Design, part: Part) -> str:
+    """Of a STEP file."""
+    return plain(f"{design.name}, {part.name}")
 
 
 def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list[Path]:

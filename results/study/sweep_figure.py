@@ -21,8 +21,10 @@ MOST_PANELS = 4
 """Of a figure as wide as a page and no higher than its text."""
 WIDE_IN, PANEL_IN = 8.0, 1.75
 """Inches: the figure's width, a panel's height."""
-TITLE_IN, LEGEND_IN, AXIS_IN = 0.5, 0.2, 0.55
+TITLE_IN, LEGEND_IN, AXIS_IN = 0.65, 0.25, 0.55
 """Inches: room for a panel's title, for the legend above all and the axis below all panels."""
+TITLE_LETTERS = 75
+"""In a line of a panel's title, of 10 points, above WIDE_IN's panel."""
 MARGIN = 0.12
 """Of a panel's height above and below the values: room for the ring about the best."""
 REACH = 1.0
@@ -35,8 +37,14 @@ def is_sweep(result: StudyResult) -> bool:
 
 
 def swept_figures(result: StudyResult) -> tuple[str, ...]:
-    """What is shown over the dimension: the figures shown, then those constrained."""
-    return tuple(dict.fromkeys([*result.shown, *result.study.file.constraint]))[:MOST_PANELS]
+    """What is shown over the dimension: objectives, constraints by how many designs break them, the rest."""
+    limits = result.study.file.constraint
+
+    def keeping(name: str) -> int:
+        return sum(limits[name].excess(r.outcome.figures[name]) <= 0 for r in result.built)
+
+    by_use = [*result.study.file.objective, *sorted(limits, key=keeping), *result.shown]
+    return tuple(dict.fromkeys(by_use))[:MOST_PANELS]
 
 
 def write_sweep(path: Path, result: StudyResult) -> None:
@@ -87,8 +95,11 @@ def _panel(axes: Axes, result: StudyResult, key: str, name: str) -> None:
     if limit is not None:
         _draw_limit(axes, limit, values[np.isfinite(values)])
     q = entry(name)
-    axes.set_title(q.name if limit is None else f"{q.name} ({allowed(name, limit)})", fontsize=10)
+    title = [q.name] if limit is None else [q.name, f"({allowed(name, limit)})"]
+    one_line = sum(map(len, title)) < TITLE_LETTERS
+    axes.set_title((" " if one_line else "\n").join(title), fontsize=10)
     axes.set_ylabel(" in ".join(filter(None, (q.symbol and q.mathtext, q.unit))))
+    axes.ticklabel_format(axis="y", useOffset=False)
     axes.grid(True)
 
 

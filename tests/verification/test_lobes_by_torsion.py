@@ -19,11 +19,17 @@ from example_files import EXAMPLES
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases
+from flexspline.geometry.nested import nested_bodies
+from flexspline.pipeline import load_cases, revolved
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import by_two_bodies
 from flexspline.pipeline.enclosure import TwoBodies
-from flexspline.pipeline.lobes_by_torsion import ENTRY_DOUBT, lobes_by_torsion
+from flexspline.pipeline.lobes_by_torsion import (
+    ENTRY_DOUBT,
+    FLUSH_DOUBT,
+    entry_doubt,
+    lobes_by_torsion,
+)
 from flexspline.pipeline.part_stiffness import part_stiffness, revolved_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -40,6 +46,8 @@ CASES = {
     },
 }  # fmt: skip
 """Changes to xb1-40. The bodies in torsion are ± 2.4 and 17 % apart."""
+FINE = 2e-4
+"""Of the bodies' bounds, where they are compared with each other."""
 PLACES, LAYERS = 24, 4
 """Of a network: nodes about the axis, and along it."""
 
@@ -172,3 +180,30 @@ def test_the_interval_by_hand() -> None:
 def test_bodies_without_harmonics_are_refused() -> None:
     with pytest.raises(ComputationError, match="no harmonics"):
         lobes_by_torsion(exact(70.0), exact(60.0), TwoBodies(exact(130.0), exact(100.0)), 6, 0.5)
+
+
+@pytest.mark.parametrize(("gap_mm", "off"), [(0.0, 0.010), (1.0, 0.0)])
+def test_only_a_ring_on_the_flange_adds_otherwise_than_torsion(gap_mm: float, off: float) -> None:
+    """A flange of 1 mm with holes close to the tube, the ring on it or above; by harmonics alone."""
+    changes = {
+        "wall_thickness_mm": 0.5 if gap_mm else 0.825, "ring_thickness_mm": 0.825, "ring_width_mm": 12.0,
+        "ring_offset_mm": 0.0, "length_mm": 13.0 + gap_mm, "diaphragm_thickness_mm": 1.0,
+        "flange_thickness_mm": 1.0, "flange_inner_diameter_mm": 61.0, "flange_outer_diameter_mm": 75.0,
+        "bolt_count": 12, "bolt_circle_diameter_mm": 65.3, "bolt_hole_diameter_mm": 4.0,
+        "inner_fillet_mm": 0.0, "outer_fillet_mm": 0.0,
+    }  # fmt: skip
+    hat = load_design(EXAMPLES / "hat-25.toml").changed(
+        {f"flexspline.{key}": value for key, value in changes.items()}
+    )
+    bodies = nested_bodies(hat.part("flexspline"))
+    turned, pressed = [], []
+    for body in (bodies.cut, bodies.whole):
+        turned.append(1 / revolved.torsion(body, FINE).K_Nm_per_rad)
+        lobes = revolved.lobes(body, True, FINE)
+        pressed.append(lobes.harmonics[0] / lobes.K_Nm_per_rad)
+    ratio = (pressed[0] - pressed[1]) / (turned[0] - turned[1])
+    # 1/K of each to FINE/2, and the two differ by 3 %
+    assert ratio == pytest.approx(1 - off, abs=0.005)
+    doubt = entry_doubt(hat.flexspline)
+    assert doubt == (FLUSH_DOUBT if off else ENTRY_DOUBT)
+    assert off < doubt / 2
