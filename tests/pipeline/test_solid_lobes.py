@@ -98,6 +98,22 @@ def test_no_mesh_is_solved_that_promises_no_better_bounds(
     assert first_elements(part, supported, known=10.0) > 1  # of torsion
 
 
+def test_a_small_mesh_is_solved_whatever_is_expected(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = model(folder)
+    monkeypatch.setattr(solid_lobes, "MOST_LOBE_ELEMENTS", 1)
+    monkeypatch.setattr(solid_lobes, "USUAL_OVER_TORSION", 1e3)
+    monkeypatch.setattr(solid_lobes, "USUAL_OF_FREE", 1e3)
+    quarter = rim_mesh(part).mesh.elements * copies_in_rim(part)
+    monkeypatch.setattr(solid_lobes, "SMALL_ELEMENTS", quarter)
+    for supported in (True, False):
+        assert first_elements(part, supported, known=1e-4) > 1
+    monkeypatch.setattr(solid_lobes, "SMALL_ELEMENTS", quarter - 1)
+    with pytest.raises(NoBetterMeshError):
+        first_elements(part, True, known=1e-4)
+
+
 def test_the_enclosure_then_answers_and_says_why(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
