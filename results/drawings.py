@@ -30,11 +30,6 @@ TURNING = 3
 """The same of the 3-D views."""
 
 
-def drawing_key(name: str, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What a drawing is kept by."""
-    return {"drawing": DRAWING, "name": name, **inputs}
-
-
 @dataclass(frozen=True)
 class Drawing:
     """A picture of a part, that as WebP, a chart, or the view of a picture's part that turns in a browser.
@@ -52,31 +47,29 @@ class Drawing:
 
     @property
     def key(self) -> Mapping[str, Any]:
-        return drawing_key(self.name, self.inputs)
+        """What it is kept by."""
+        return {"drawing": DRAWING, "name": self.name, **self.inputs}
 
 
 def of_field(context: AnalysisContext, name: str, field: SolidField) -> Iterator[Drawing]:
-    """What shows a field of `RunResult.fields`: a part's mesh, its stress, and that as a view."""
+    """What shows a field of `RunResult.fields`: a part's mesh, its stress, and that as a view.
+
+    Each is kept by all that it is drawn from: one part has other fields where a solve was cut short.
+    """
     turning = {"turning": TURNING}
     if name == ELLIPSE:
-        w0 = context.design.w0_mm
-        inputs: dict[str, Any] = {**context.part("flexspline").torsion_key, "w0_mm": w0}
-        yield Drawing(name, "part", inputs, write_ellipse_picture, (field, w0))
-        yield Drawing(name, "view", turning | inputs, write_turning_ellipse, (field, w0))
+        moved = field, context.design.w0_mm
+        yield Drawing(name, "part", _content(moved), write_ellipse_picture, moved)
+        yield Drawing(name, "view", turning | _content(moved), write_turning_ellipse, moved)
         return
     part = next(part for part in TITLES if name == f"{part}_torque")
-    title, torque, solved = (
-        TITLES[part],
-        context.design.load.torque_Nm,
-        context.part(part).torsion_key,
-    )
+    title = TITLES[part]
     if field.left_out:
         title += f" without {field.left_out}"
-    yield Drawing(f"{part}_mesh", "part", solved, write_mesh_picture, (field.mesh, title))
-    inputs = {**solved, "torque_Nm": torque}
-    shown = field, title, torque
-    yield Drawing(name, "part", inputs, write_torque_stress, shown)
-    yield Drawing(name, "view", turning | inputs, write_turning_torque_stress, shown)
+    meshed, shown = (field.mesh, title), (field, title, context.design.load.torque_Nm)
+    yield Drawing(f"{part}_mesh", "part", _content(meshed), write_mesh_picture, meshed)
+    yield Drawing(name, "part", _content(shown), write_torque_stress, shown)
+    yield Drawing(name, "view", turning | _content(shown), write_turning_torque_stress, shown)
 
 
 def small(png: bytes) -> Drawing:
@@ -90,8 +83,11 @@ def charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterator[Dra
         one = chart(name)
         arguments = one.arguments(result, extended)
         if arguments is not None:
-            inputs = {"sha256": _digest(packed(arguments))}
-            yield Drawing(name, "chart", inputs, one.write, arguments)
+            yield Drawing(name, "chart", _content(arguments), one.write, arguments)
+
+
+def _content(arguments: tuple[Any, ...]) -> dict[str, Any]:
+    return {"sha256": _digest(packed(arguments))}
 
 
 def _digest(data: bytes) -> str:

@@ -18,12 +18,13 @@ from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
-from flexspline.results.drawings import Drawing, charts, drawing_key, of_field, small
+from flexspline.results.drawings import Drawing, charts, of_field, small
+from flexspline.results.file_names import CHARTS, RENDERED
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 from flexspline.results.renders.scene import load
 
-STAGE = "picture"
-"""Of the cache."""
+STAGE, DRAWN = "picture", "drawn"
+"""Of the cache: the pictures, and that those of a part were drawn once."""
 NOTED = {"part": "picture", "view": "3-D view"}
 """Kinds of drawings that take long enough to be told."""
 WITHOUT_VTK = ("chart", "small")
@@ -89,8 +90,7 @@ class RunDrawings:
 
     def prepare(self) -> None:
         """Load what draws parts, in its own process, while they are solved; nothing where all is drawn."""
-        part = self.context.part("flexspline")
-        if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
+        if not self.context.cache.has(DRAWN, self.context.part("flexspline").torsion_key):
             self._of_parts.thread.submit(self._of_parts.process.draw, load)
 
     def add_field(self, name: str, field: SolidField) -> None:
@@ -105,7 +105,7 @@ class RunDrawings:
     def kept_in(self, folder: Path) -> RunPictures:
         """Wait for all, and write the pictures.
 
-        A picture of an earlier run that cannot be drawn now is removed: it may be another design's.
+        A picture of an earlier run that is not drawn now is removed: it may be another design's.
         """
         paths: dict[str, Path] = {}
         views: dict[str, bytes] = {}
@@ -125,7 +125,11 @@ class RunDrawings:
                     missing[f"3-D view {name}"] = str(error)
                 else:
                     missing[name] = str(error)
-                    path.unlink(missing_ok=True)
+        for name in {*RENDERED, *CHARTS, *missing} - set(paths):
+            (folder / f"{name}.png").unlink(missing_ok=True)
+        if not missing:
+            drawn = self.context.part("flexspline").torsion_key
+            self.context.cache.get(DRAWN, drawn, lambda: True)
         smaller = {}
         for name, made in self._small.items():
             with suppress(NotDrawnError):  # pages take the PNG

@@ -11,6 +11,7 @@ from flexspline.geometry.design import Design, Solver
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
+from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.load_cases import SOLID_CASES
 from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.stiffnesses import NotFoundError, Stiffnesses
@@ -48,7 +49,7 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
 
     Raises
     ------
-    NestingError : one of two models is wrong.
+    NestingError : one of two models is wrong; it names the design's values.
     """
     try:
         tables = dict(task.tables)
@@ -57,6 +58,8 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
         context = analysis_context(design)
         found = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
         return SolidAnswer(Outcome(_figures(design, found)), found.passing)
+    except NestingError as fault:
+        raise fault.at(task.values) from None
     except NotFoundError as fault:
         return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
     except (*DESIGN_FAULTS, MemoryError) as fault:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flexspline import __version__
 from flexspline.pipeline.analysis import RunResult
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import write_together
 from flexspline.results.pictures import RunPictures
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
@@ -31,8 +31,7 @@ def write_run_reports(
     """
     document = run_document(report_content(result, pictures, extended, attached))
     made = reports_of(document, pictures.paths, pictures.views, smaller=pictures.small)
-    for name, data in made.items():
-        write_bytes(folder / name, data)
+    write_together(folder, made)
 
 
 def report_content(

@@ -11,10 +11,11 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.results.drawings import Drawing
+from flexspline.results.drawings import Drawing, of_field
 from flexspline.results.pictures import RunDrawings
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 from flexspline.results.renders.scene import load
@@ -52,7 +53,8 @@ def test_what_crashes_costs_itself_and_its_view_and_an_older_picture_goes(
     context, tmp_path: Path
 ) -> None:
     noted = tmp_path / "calls"
-    (tmp_path / "part.png").write_bytes(b"an earlier design's")
+    for name in ("part.png", "gear_loads.png"):  # the second is not asked for now
+        (tmp_path / name).write_bytes(b"an earlier design's")
     with RunDrawings(context) as drawings:
         for kind in ("chart", "view"):
             drawings.add(
@@ -64,8 +66,27 @@ def test_what_crashes_costs_itself_and_its_view_and_an_older_picture_goes(
     assert set(drawn.paths) == {"chart 0"}
     assert set(drawn.missing) == {"part"}
     assert "SIGSEGV" in drawn.missing["part"]
-    assert not (tmp_path / "part.png").exists()
+    assert {each.name for each in tmp_path.glob("*.png")} == {"chart 0.png"}
     assert noted.read_text() == "called\n"  # what crashed once is not tried again
+
+
+def test_a_field_of_a_solve_that_was_cut_short_has_its_own_pictures(suite_cache: Path) -> None:
+    """The same part and question, another mesh: a picture of the one is not shown for the other."""
+    context = AnalysisContext(load_design(CUP), Cache(suite_cache), Progress())
+    field = torque_field(context.part("shaft"))
+    other = replace(field, peak=field.peak.times(1.1))
+    keys = [
+        [d.key for d in of_field(context, "shaft_torque", one)] for one in (field, other, field)
+    ]
+    assert keys[0] == keys[2]
+    assert keys[0][0] == keys[1][0]  # of the mesh
+    assert keys[0][1:] != keys[1][1:]
+    coarser = replace(field.mesh, nodes=field.mesh.nodes * 1.01)
+    (mesh, *_), (meshed, *_) = (
+        [d.key for d in of_field(context, "shaft_torque", one)]
+        for one in (field, replace(field, mesh=coarser))
+    )
+    assert mesh != meshed
 
 
 def test_a_stop_ends_the_drawing(context) -> None:
