@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.percent import percent
 
 
 class SolidError(ComputationError):
@@ -44,17 +43,6 @@ class TooManyElementsError(SolidError):
         super().__init__(
             f"the mesh would have {elements:.0f} elements or more, at most {most:.0f}:"
             " raise solver.tolerance_pct or solver.edge_length_mm"
-        )
-
-
-class NoBetterMeshError(SolidError):
-    """No mesh is worth its solve: it promises ± `expected` of K, and ± `known` is there already."""
-
-    def __init__(self, expected: float, known: float) -> None:
-        self.expected, self.known = expected, known
-        super().__init__(
-            f"no solid mesh was solved: bounds of ± {percent(expected, 3)} were expected, and "
-            f"± {percent(known, 3)} is known"
         )
 
 

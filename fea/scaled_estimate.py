@@ -44,16 +44,19 @@ class ScaledEstimate:
     """The range of q where each mesh follows the errors of the one before and has twice its elements."""
     estimates: list[float] = field(default_factory=list)
     """Relative, of each mesh's own K."""
+    found: list[float] = field(default_factory=list)
+    """K by each mesh [N·m/rad]: its own, or a better one that is above K too."""
 
-    def add(self, level: MeshLevel, relative: float) -> None:
-        """One more mesh."""
+    def add(self, level: MeshLevel, relative: float, K_Nm_per_rad: float | None = None) -> None:
+        """One more mesh; `relative`, the estimate, is of `K_Nm_per_rad` where the mesh's own is not used."""
         self.levels.append(level)
         self.estimates.append(relative)
+        self.found.append(level.K_Nm_per_rad if K_Nm_per_rad is None else K_Nm_per_rad)
 
     @property
     def K_Nm_per_rad(self) -> float:
-        """Of the finest mesh."""
-        return self.levels[-1].K_Nm_per_rad
+        """By the finest mesh."""
+        return self.found[-1]
 
     @property
     def scale(self) -> float:
@@ -61,7 +64,7 @@ class ScaledEstimate:
         as much more as K's falls tell."""
         if len(self.levels) < 2:
             return self.usual
-        before, last = (level.K_Nm_per_rad for level in self.levels[-2:])
+        before, last = self.found[-2:]
         promised = self.estimates[-2] * before - self.estimates[-1] * last
         c = (before - last) / promised if promised > 0 else self.believed[1]
         return max(float(np.clip(c, *self.believed)), self._left / self.estimates[-1])
@@ -71,7 +74,7 @@ class ScaledEstimate:
         """Error of the finest mesh's K over that K by K's last two falls; 0 where they are not asked."""
         if self.falls is None or len(self.levels) < 3:
             return 0.0
-        K = [level.K_Nm_per_rad for level in self.levels[-3:]]
+        K = self.found[-3:]
         before, last = K[0] - K[1], K[1] - K[2]
         q = float(np.clip(last / before, *self.falls)) if before > 0 else self.falls[1]
         return last * q / (1 - q) / K[-1]

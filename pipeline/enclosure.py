@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.types import MET, Stiffness, StiffnessModel
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
@@ -165,8 +164,8 @@ def answered_within(
         solid = solve()
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
-        failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "
-        why = replace(enclosure.shortfall, words=f"{enclosure.shortfall}, and {failed}{fault}")
+        words = f"{enclosure.shortfall}, and the solid model failed: {fault}"
+        why = replace(enclosure.shortfall, words=words)
         return replace(enclosure, shortfall=MET if met else why)
     return held_within(solid, enclosure, tolerance)
 

@@ -27,6 +27,7 @@ from flexspline.pipeline.enclosed_part import (
 from flexspline.pipeline.enclosure import TwoBodies, answered_within, check_against
 from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.lobes_by_torsion import entry_doubt, lobes_by_torsion
+from flexspline.pipeline.lobes_with_holes import lobes_with_holes
 from flexspline.pipeline.part_stiffness import (
     part_stiffness,
     revolved_stiffness,
@@ -38,24 +39,19 @@ from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
-NO_BETTER = 1.5
-"""Where K_b in torsion misses the tolerance by no more than this factor, so may K_b under the lobes that
-follows from it miss torsion's half-width. A solid model of the lobes, whose bounds are 0.9 to 3.1 times
-torsion's on one mesh (`solid_lobes.USUAL_OVER_TORSION`), is not solved for the little that is missing."""
-
 
 @dataclass(frozen=True)
 class RimModels:
     """How one load case of the rim is solved.
 
-    `solid` takes the part and, as `known`, the relative half-width of the bounds that two bodies of
-    revolution give. It is None where no solid model is; then `with_holes` answers for parts with bolt holes.
+    `solid` is the solid model alone, `with_holes` is for parts with bolt holes where no model is asked for
+    by name: where `solid` is None it answers under any setting, else where two bodies of revolution do not.
     `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
     revolved: Callable[[PartModel], Stiffness]
     fast: Callable[[Part, float], Stiffness]
-    solid: Callable[..., Stiffness] | None = None
+    solid: Callable[[PartModel], Stiffness] | None = None
     with_holes: Callable[[PartModel], Stiffness] | None = None
 
 
@@ -76,14 +72,15 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     if flexspline.axisymmetric:
         return asked.revolved(flexspline)
     if asked.with_holes is not None and has_enclosure(flexspline):
-        return asked.with_holes(flexspline)
+        if asked.solid is None:
+            return asked.with_holes(flexspline)
+        if may_answer(flexspline):
+            return _of_holed(flexspline, asked.revolved, asked.with_holes)
     if asked.solid is None:
         raise ComputationError(
             f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
-    if may_answer(flexspline):
-        return _of_holed(flexspline, asked.revolved, asked.solid)
     solid = asked.solid(flexspline)
     if enclosure := enclosure_if_any(flexspline, asked.revolved):
         check_against(solid, enclosure)
@@ -91,14 +88,13 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
 
 
 def _of_holed(
-    flexspline: PartModel, revolved: PartSolver, solid: Callable[..., Stiffness]
+    flexspline: PartModel, revolved: PartSolver, with_holes: Callable[[PartModel], Stiffness]
 ) -> Stiffness:
-    """The enclosure; where it is too wide K by torsion within it; at last the solid model's."""
+    """The enclosure; where it is too wide K by torsion within it; at last what the holes change, solved."""
     found = enclosure_if_any(flexspline, revolved, _expected(flexspline))
     if found is None:
-        return solid(flexspline)
+        return with_holes(flexspline)
     tolerance = flexspline.tolerance
-    enough = tolerance
     if found.half_width > tolerance:
         try:
             K_b = part_stiffness(flexspline)
@@ -108,12 +104,9 @@ def _of_holed(
             found = answered_within(
                 found, lambda: _by_torsion(flexspline, K_b, revolved), tolerance
             )
-            if tolerance < K_b.half_width <= NO_BETTER * tolerance:
-                enough = NO_BETTER * K_b.half_width
-    if found.half_width <= enough:
+    if found.half_width <= tolerance:
         return found
-    solve = partial(solid, flexspline, known=found.half_width)
-    return answered_within(found, solve, tolerance)
+    return answered_within(found, lambda: with_holes(flexspline), tolerance)
 
 
 def _by_torsion(flexspline: PartModel, K_b: Stiffness, revolved: PartSolver) -> Stiffness:
@@ -135,7 +128,10 @@ def _expected(flexspline: PartModel) -> float:
 
 
 def by_itself(
-    case: RimCase, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
+    case: RimCase,
+    solve: RimSolve,
+    solid: Callable[[PartModel], Stiffness] | None = None,
+    with_holes: Callable[[PartModel], Stiffness] | None = None,
 ) -> RimModels:
     """A case that `solve` answers on a meridian without another case's answer."""
 
@@ -154,7 +150,7 @@ def by_itself(
     def fast(part: Part, width: float) -> Stiffness:
         return rim(part, solve, width)
 
-    return RimModels(of_part, fast, solid, None if solid else enclosure)
+    return RimModels(of_part, fast, solid, with_holes or enclosure)
 
 
 def _resting(flexspline: PartModel) -> Stiffness:
@@ -179,14 +175,16 @@ def _resting_with_holes(flexspline: PartModel) -> Stiffness:
     )
 
 
-_SOLID: Mapping[RimCase, Callable[..., Stiffness]] = {
-    "lobes": partial(solid_lobes, supported=True),
-    "lobes_unsupported": partial(solid_lobes, supported=False),
+_SOLID: Mapping[RimCase, tuple[Callable[[PartModel], Stiffness], ...]] = {
+    "lobes": tuple(partial(f, supported=True) for f in (solid_lobes, lobes_with_holes)),
+    "lobes_unsupported": tuple(
+        partial(f, supported=False) for f in (solid_lobes, lobes_with_holes)
+    ),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
 CASES: Mapping[RimCase, RimModels] = {
     **{
-        name: by_itself(name, case.solve, _SOLID.get(name))
+        name: by_itself(name, case.solve, *_SOLID.get(name, ()))
         for name, case in RIM_CASES.items()
         if case.solve is not None
     },

@@ -21,10 +21,11 @@ from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
+from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
-from flexspline.fea.refinement import refinements
+from flexspline.fea.refinement import refine, refinements
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
@@ -57,6 +58,7 @@ class LobeSolution:
     Attributes
     ----------
     energies : strain energy of n = 0, 2, 4, … [N·mm].
+    amplitudes : (count, 3) of each [mm].
     work : torque's work T·Θ over all harmonics [N·mm], twice the energy if all is well.
     tail : bound of what the harmonics left out would add [N·mm].
     error : (m,) estimated error of twice the energy in each triangle [N·mm].
@@ -64,6 +66,7 @@ class LobeSolution:
     """
 
     energies: tuple[float, ...]
+    amplitudes: tuple[np.ndarray, ...]
     work: float
     tail: float
     error: np.ndarray
@@ -92,6 +95,36 @@ def lobe_coefficient(n: int) -> float:
     if abs(n - p) < 1e-9:  # n = p, but for the rounding of π
         return LOBE_HALF_WIDTH / pi
     return 2 / pi * p**2 * sin(n * LOBE_HALF_WIDTH) / (n * (p**2 - n**2))
+
+
+def lobe_harmonic(n: int) -> Harmonic:
+    """The load's harmonic n; of n = 0 it is torsion."""
+    return Harmonic(n, torsion=n == 0)
+
+
+@dataclass(frozen=True)
+class SolvedLobes:
+    """A stiffness under the lobe load, and the harmonics n = 0, 2, 4, … of the finest mesh for TORQUE.
+
+    u_r = −U sin nφ, u_θ = V cos nφ, u_z = −W sin nφ of `amplitudes`, (count, 3) each [mm].
+    """
+
+    stiffness: Stiffness
+    space: Space
+    amplitudes: tuple[np.ndarray, ...]
+
+
+def solved_lobes(
+    outline: Meridian,
+    material: Elastic,
+    supported: bool,
+    relative_width: float,
+    deadline: Deadline = NO_DEADLINE,
+) -> SolvedLobes:
+    """The last of `lobe_stiffnesses`, with its fields."""
+    lobes = _RevolvedLobes(material, supported, relative_width)
+    shortfall = refine(lobes, triangulate(outline), deadline, MOST_TRIANGLES)
+    return SolvedLobes(lobes.stiffness(shortfall), lobes.space, lobes.found.amplitudes)
 
 
 def lobe_stiffnesses(
@@ -131,6 +164,7 @@ class _RevolvedLobes:
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
         self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
+        self.space = model.space
         self.estimate.add(_level(model, self.found), self.found.estimate)
 
     @property
@@ -181,10 +215,11 @@ def solve_lobes(
     square = 2 * 3 / 4 * LOBE_HALF_WIDTH / pi  # Σ t_n² over n > 0, + 2 t_0²: 1/π ∫ t² of two bumps
     left = square - 2 * lobe_coefficient(0) ** 2
     energies: list[float] = []
+    amplitudes: list[np.ndarray] = []
     error = np.zeros(len(model.mesh.triangles))
     worst, unknowns, work = 0.0, 0, 0.0
     for n in range(0, 2 * MOST_HARMONICS, 2):
-        wave = Harmonic(n, torsion=n == 0)
+        wave = lobe_harmonic(n)
         coefficient = lobe_coefficient(n)
         load = peak * model.pressed("mesh", TANGENTIAL, wave)
         fixed = [f for patch in held for f in model.held(patch)]
@@ -193,6 +228,7 @@ def solve_lobes(
         solved = model.solve(wave, fixed, load)
         compliance = solved.twice_energy / 2
         energies.append(compliance * coefficient**2)
+        amplitudes.append(coefficient * solved.values.reshape(-1, 3))
         work += solved.work * coefficient**2
         error += recovered(model, wave, solved.values).error * coefficient**2
         worst, unknowns = max(worst, solved.residual), max(unknowns, solved.unknowns)
@@ -201,7 +237,7 @@ def solve_lobes(
         # the compliance falls by up to 10⁴ from n = 2 to 8, slowly beyond: from there it bounds the rest
         if n >= 8 and rest < tail * sum(energies):
             break
-    return LobeSolution(tuple(energies), work, rest, error, unknowns, worst)
+    return LobeSolution(tuple(energies), tuple(amplitudes), work, rest, error, unknowns, worst)
 
 
 def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:

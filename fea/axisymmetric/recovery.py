@@ -63,16 +63,22 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
 
 def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
     """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
-    lam, mu, n = material.lam, material.mu, wave.n
     r = np.asarray(basis.global_coordinates())[0]
-    component = displacement.reshape(-1, 3).T
-    v = basis.interpolate(component[TANGENTIAL])
-    v_r, v_z = v.grad
+    amplitude = displacement.reshape(-1, 3).T
+    seen = {component: basis.interpolate(amplitude[component]) for component in wave.components}
+    return stress_of(wave, material, r, seen)
+
+
+def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[int, Any]) -> Parts:
+    """Amplitudes [MPa] at radii r [mm] of scikit-fem's fields U, V, W [mm] there, by their component."""
+    lam, mu, n = material.lam, material.mu, wave.n
     if wave.torsion:
+        v = seen[TANGENTIAL]
+        v_r, v_z = v.grad
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
-    u, w = basis.interpolate(component[RADIAL]), basis.interpolate(component[AXIAL])
+    u, w = seen[RADIAL], seen[AXIAL]
     (u_r, u_z), (w_r, w_z) = u.grad, w.grad
-    around = (u + n * v) / r
+    around = (u + n * seen[TANGENTIAL]) / r if n else u / r
     mean = lam * (u_r + around + w_z)
     found = {
         RR: mean + 2 * mu * u_r,
@@ -81,6 +87,8 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
         RZ: mu * (u_z + w_r),
     }
     if n:
+        v = seen[TANGENTIAL]
+        v_r, v_z = v.grad
         found |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
     return found
 

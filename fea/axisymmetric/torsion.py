@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined, refined_twice
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
-from flexspline.fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
+from flexspline.fea.axisymmetric.torsion_fields import Bracket, Turn, across_from_axis, bracket
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refine
@@ -45,6 +47,25 @@ def torsional_stiffness(
 
     Source: J. H. Michell, Proc. London Math. Soc. 31 (1899) 130-146, for the two fields.
     """
+    return solved_torsion(outline, material, driven, relative_width, deadline).stiffness
+
+
+@dataclass(frozen=True)
+class SolvedTorsion:
+    """The stiffness, and the field of the finest mesh for a turn of 1 rad."""
+
+    stiffness: Stiffness
+    turn: Turn
+
+
+def solved_torsion(
+    outline: Meridian,
+    material: Elastic,
+    driven: str,
+    relative_width: float,
+    deadline: Deadline = NO_DEADLINE,
+) -> SolvedTorsion:
+    """`torsional_stiffness` with its field."""
     boundary = sorted_boundary(outline, driven)
     mesh = triangulate(outline)
     while (near := across_from_axis(mesh, boundary)).any():
@@ -52,7 +73,7 @@ def torsional_stiffness(
     per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
     found = _Bounds(boundary, relative_width, per_G)
     shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
-    return Stiffness(
+    stiffness = Stiffness(
         K_Nm_per_rad=(found.lower + found.upper) / 2 * per_G,
         lower_Nm_per_rad=found.lower * per_G,
         upper_Nm_per_rad=found.upper * per_G,
@@ -66,6 +87,7 @@ def torsional_stiffness(
         levels=tuple(found.levels),
         shortfall=shortfall,
     )
+    return SolvedTorsion(stiffness, found.turn)
 
 
 class _Bounds:
@@ -81,7 +103,7 @@ class _Bounds:
         # every mesh's bounds hold, so the best of all do
         self.lower, self.upper = max(self.lower, found.lower), min(self.upper, found.upper)
         self.levels.append(_level(mesh, found, self._per_G))
-        self._share = found.share
+        self._share, self.turn = found.share, found.turn
 
     @property
     def met(self) -> bool:

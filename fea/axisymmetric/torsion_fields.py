@@ -51,6 +51,14 @@ DUAL_DEGREE = 11
 
 
 @dataclass(frozen=True)
+class Turn:
+    """ψ [rad] at the P2 numbers (count,) of a space, for a turn of 1 rad."""
+
+    space: Space
+    psi: np.ndarray
+
+
+@dataclass(frozen=True)
 class Bracket:
     """One mesh's bounds for G = 1.
 
@@ -61,6 +69,7 @@ class Bracket:
     share : (m,) each triangle's part of upper - lower [mm³].
     unknowns : of the larger of the two systems.
     residual : relative residual of the worse of the two solves.
+    turn : the upper bound's solution.
     """
 
     lower: float
@@ -69,6 +78,7 @@ class Bracket:
     share: np.ndarray
     unknowns: int
     residual: float
+    turn: Turn
 
 
 def touching_axis(mesh: MeridianMesh) -> np.ndarray:
@@ -107,7 +117,8 @@ def bracket(mesh: MeridianMesh, boundary: Boundary) -> Bracket:
     sliver = np.abs(outer.weights.sum(axis=1) / inner.weights.sum(axis=1) - 1)
     share = 2 * pi * (np.maximum(misfit, 0.0) + stretch * sliver)
     residual = max(primal_residual, dual_residual)
-    return Bracket(lower, upper, reaction, share, int(inner.count), residual)
+    turn = Turn(outer, psi)
+    return Bracket(lower, upper, reaction, share, int(inner.count), residual, turn)
 
 
 def _piece(number: int) -> str:

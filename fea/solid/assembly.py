@@ -61,6 +61,10 @@ class NodeFrames:
         """(n, 3) cylindrical to (n, 3) Cartesian components."""
         return np.einsum("nab,nb->na", self.axes, u)
 
+    def to_cylindrical(self, u: np.ndarray) -> np.ndarray:
+        """(n, 3) Cartesian to (n, 3) cylindrical components."""
+        return np.einsum("nab,na->nb", self.axes, u)
+
 
 def stiffness_matrix(space: SolidSpace, material: Elastic, frames: NodeFrames) -> csr_matrix:
     """Symmetric matrix (3n, 3n) N/mm; unknown 3·node + component."""

@@ -21,7 +21,7 @@ from scipy.sparse import coo_matrix, csr_matrix
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import Model, Supports
-from flexspline.fea.solid.solver import Solution, solve
+from flexspline.fea.solid.solver import Case, Solution, solve
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.solid.waves import CyclicWave
@@ -159,7 +159,7 @@ class WaveSupports:
             return _real_form(own, phase, phase[:corners], corners)
 
         solution = solve(
-            matrix, forces, fixed, value[fixed], interpolation, model.solve_by,
+            matrix, Case(forces, value[fixed]), fixed, interpolation, model.solve_by,
             slow=model.is_flat,
         )  # fmt: skip
         x, y = solution.unknowns[places].reshape(2, -1, 3)

@@ -6,7 +6,7 @@ conjugate gradients in double.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 import numpy as np
@@ -56,8 +56,8 @@ def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
         factors.release()
 
 
-def direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
-    """Solve K u = f once.
+def direct(matrix: csr_matrix, rights: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Solve K u = f for each right-hand side (N,) by the same factors.
 
     Large systems by conjugate gradients on factors in single precision; by factors in double where those
     fail, or are not near enough to K⁻¹.
@@ -66,11 +66,12 @@ def direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     ------
     SolveError : as `factorised`.
     """
-    if pardiso() is not None and matrix.shape[0] >= SINGLE_FROM and right.any():
+    any_load = any(right.any() for right in rights)
+    if pardiso() is not None and matrix.shape[0] >= SINGLE_FROM and any_load:
         with factorised(matrix, single=True) as back, suppress(SolveError):
-            return _in_double(matrix, right, back)
+            return [_in_double(matrix, right, back) for right in rights]
     with factorised(matrix) as back:
-        return back(right)
+        return [back(right) for right in rights]
 
 
 def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:

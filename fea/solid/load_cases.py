@@ -14,6 +14,13 @@ from flexspline.fea.errors import SolveError
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import Model, Supports
+from flexspline.fea.solid.solver import Solution
+from flexspline.fea.solid.superposition import (
+    WholeTurned,
+    WholeUnderLobes,
+    lobed_walls,
+    turned_walls,
+)
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM, TetMesh
@@ -62,6 +69,45 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
     ------
     SolveError : residual, or energy and reaction disagree beyond the limits.
     """
+    supports = _turned(model, driven)
+    return _balanced(model, driven, supports.solve(np.zeros(model.matrix.shape[0])))
+
+
+@dataclass(frozen=True)
+class SolvedCorrection:
+    """v_h of `fea.solid.superposition`, (n, 3) Cartesian mm.
+
+    `lost` : E + a(v_h, v_h) of the whole part [N·mm]. `unknowns` : of all waves together.
+    """
+
+    mesh: TetMesh
+    displacement: np.ndarray
+    lost: float
+    unknowns: int
+
+
+def torsion_and_correction(
+    model: Model, driven: str, whole: WholeTurned
+) -> tuple[SolvedStiffness, SolvedCorrection]:
+    """`torsion`, and what the holes change of the body without them, by the same factors.
+
+    Raises
+    ------
+    SolveError : as `torsion`. MeshingError : as `turned_walls`.
+    """
+    walls = turned_walls(model.mesh, whole, model.material)
+    supports = _turned(model, driven)
+    own = model.frames.to_cylindrical(walls.forces).ravel()
+    turned, corrected = supports.solve_also_at_rest(np.zeros(model.matrix.shape[0]), own)
+    v = corrected.unknowns
+    lost = walls.energy + float(v @ (model.matrix @ v)) * model.copies
+    displacement = model.frames.to_cartesian(v.reshape(-1, 3))
+    return _balanced(model, driven, turned), SolvedCorrection(
+        model.mesh, displacement, lost, corrected.free_count
+    )
+
+
+def _turned(model: Model, driven: str) -> Supports:
     supports = Supports(model)
     supports.symmetry(antisymmetric=True)
     nodes = model.on(driven)
@@ -69,7 +115,11 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
         supports.set(nodes, component)
     supports.set(nodes, TANGENTIAL, model.frames.radius[nodes])
     supports.hold("mount")
-    solution = supports.solve(np.zeros(model.matrix.shape[0]))
+    return supports
+
+
+def _balanced(model: Model, driven: str, solution: Solution) -> SolvedStiffness:
+    nodes = model.on(driven)
     twice_energy = solution.unknowns @ (model.matrix @ solution.unknowns)
     torque = solution.reactions[3 * nodes + TANGENTIAL] @ model.frames.radius[nodes]
     held = model.on("mount")
@@ -97,15 +147,36 @@ def lobes(model: Model, supported: bool) -> SolvedStiffness:
     loads, torque = _lobe_loads(model)
     found = []
     for wave, load in loads.items():
-        supports = WaveSupports(model, wave, antisymmetric=True)
-        if supported:
-            supports.set(model.on("seat"), RADIAL)
-        supports.hold("mount")
+        supports = _under_lobes(model, wave, supported)
         found.append(supports.solve(load * (NMM_PER_NM / torque)))
     scale = NMM_PER_NM**2 / NMM_PER_NM
     stored, work = sum(w.stored for w in found), sum(w.work for w in found)
     solved = _of_waves(model, found, "antisymmetric")
     return SolvedStiffness(**vars(solved), K_energy=scale / stored, K_check=scale / work)
+
+
+def lobe_correction(model: Model, supported: bool, whole: WholeUnderLobes) -> SolvedCorrection:
+    """What the holes change under the lobe load, TORQUE on the whole part; model and mesh as of `lobes`.
+
+    Raises
+    ------
+    SolveError. MeshingError : as `lobed_walls`.
+    """
+    found, lost = [], 0.0
+    for walls in lobed_walls(model.mesh, repeats_of(model.mesh), whole, model.material):
+        supports = _under_lobes(model, walls.wave, supported)
+        found.append(supports.solve(model.frames.to_cylindrical(walls.forces)))
+        lost += walls.energy + found[-1].stored
+    solved = _of_waves(model, found, "antisymmetric")
+    return SolvedCorrection(solved.mesh, solved.displacement, lost, solved.dofs)
+
+
+def _under_lobes(model: Model, wave: CyclicWave, supported: bool) -> WaveSupports:
+    supports = WaveSupports(model, wave, antisymmetric=True)
+    if supported:
+        supports.set(model.on("seat"), RADIAL)
+    supports.hold("mount")
+    return supports
 
 
 def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:

@@ -13,7 +13,7 @@ from math import inf, sqrt
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
-from flexspline.fea.axisymmetric.lobes import solve_lobes
+from flexspline.fea.axisymmetric.lobes import TORQUE, solve_lobes
 from flexspline.fea.axisymmetric.marking import bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.deadline import Deadline
@@ -22,12 +22,18 @@ from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.cyclic import half_repeat, larger_deg
-from flexspline.fea.solid.load_cases import lobes
+from flexspline.fea.solid.load_cases import lobe_correction, lobes
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import ERROR_SCALES, USUAL_ERROR_SCALE, level_of
+from flexspline.fea.solid.stiffness import (
+    ERROR_SCALES,
+    HOLES_ERROR_SCALES,
+    OF_THE_HOLES,
+    level_of,
+)
 from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.superposition import WholeUnderLobes
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
-from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness, TetMesh
 from flexspline.geometry.percent import percent
 
 LOBE_STEP = 0.37
@@ -61,12 +67,6 @@ def finer_mesh(
     return Finer(step, adapted=adapted, even=True)
 
 
-def promised(tolerance: float, number: int) -> float:
-    """Relative bounds ± of K that the mesh of that number is made for."""
-    meridian = USUAL_ERROR_SCALE * MERIDIAN_SHARE * NEXT_SHARE**number
-    return tolerance * (meridian + STEP_SHARE * NEXT_STEP ** (4 * number))
-
-
 class _FreeRim:
     """The finest meridian mesh on which the harmonics of a rim without support were solved."""
 
@@ -94,6 +94,7 @@ def lobe_stiffness(
     symmetry: str,
     progress: Callable[[str], None],
     limit_s: float = inf,
+    whole: WholeUnderLobes | None = None,
 ) -> Stiffness:
     """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
 
@@ -103,25 +104,29 @@ def lobe_stiffness(
     two say (see `fea.solid.stiffness`). Where a mesh after the first fails, or would end `limit_s` seconds
     after that was made, or there are no more, `shortfall` says so.
 
+    `whole` : the part without its holes under the load, where only what these change is asked of the meshes.
+
     Raises
     ------
     ComputationError, MemoryError : of the first mesh.
     """
     mesh, usual = next(meshes)
-    estimate = ScaledEstimate(usual, ERROR_SCALES)
+    estimate = ScaledEstimate(usual, ERROR_SCALES if whole is None else HOLES_ERROR_SCALES)
     rest = (mesh for mesh, _ in meshes)
-    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate)
+    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate, whole)
     shortfall = refine(found, mesh, Deadline(limit_s))
     bounds = estimate.at_given_torque()
+    off = whole.solved.stiffness.width_Nm_per_rad / 2 if whole else 0.0
+    of = f"{OF_THE_HOLES} " if whole else ""
     return Stiffness(
         K_Nm_per_rad=bounds.K,
-        lower_Nm_per_rad=bounds.lower,
-        upper_Nm_per_rad=bounds.upper,
+        lower_Nm_per_rad=bounds.lower - off,
+        upper_Nm_per_rad=bounds.upper + off,
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,
         method=(
-            "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
+            f"{of}recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
             f" {estimate.scale:.2f}"
         ),
         levels=tuple(estimate.levels),
@@ -141,20 +146,43 @@ class _SolidLobes:
     symmetry: str
     progress: Callable[[str], None]
     estimate: ScaledEstimate
+    whole: WholeUnderLobes | None
 
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
-            solved = lobes(Model.of(half_repeat(mesh), self.material), self.supported)
-            error = energy_error(solved.mesh, solved.displacement, self.material)
+            model = Model.of(half_repeat(mesh), self.material)
+            elements = (
+                self._solve_all(model)
+                if self.whole is None
+                else self._solve_holes(model, self.whole)
+            )
+        self.progress(f"{elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}")
+
+    def _solve_all(self, model: Model) -> int:
+        solved = lobes(model, self.supported)
+        error = energy_error(solved.mesh, solved.displacement, self.material)
         self.estimate.add(level_of(solved), error.relative)
-        self.progress(
-            f"{solved.mesh.elements} elements, {self.symmetry} of the part, "
-            f"K ± {percent(self.estimate.relative)}"
-        )
+        return solved.mesh.elements
+
+    def _solve_holes(self, model: Model, whole: WholeUnderLobes) -> int:
+        found = lobe_correction(model, self.supported, whole)
+        error = energy_error(found.mesh, found.displacement, self.material)
+        work = TORQUE**2 / (whole.solved.stiffness.K_Nm_per_rad * NMM_PER_NM) + found.lost
+        K = TORQUE**2 / work / NMM_PER_NM
+        estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
+        level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
+        self.estimate.add(level, float(estimate))
+        return found.mesh.elements
+
+    @property
+    def half(self) -> float:
+        """Half the bounds' distance over K."""
+        off = self.whole.solved.stiffness.half_width if self.whole else 0.0
+        return self.estimate.relative + off
 
     @property
     def met(self) -> bool:
-        return self.estimate.relative <= self.tolerance
+        return self.half <= self.tolerance
 
     def finer(self, mesh: TetMesh) -> TetMesh | None:
         return next(self.meshes, None)

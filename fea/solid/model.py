@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +13,7 @@ from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.flatness import mostly_flat
 from flexspline.fea.solid.memory import SolverKind, check_before_assembly
-from flexspline.fea.solid.solver import Solution, solve
+from flexspline.fea.solid.solver import Case, Solution, solve_each
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.types import Elastic, TetMesh
@@ -95,13 +96,24 @@ class Supports:
             self.set(nodes, component)
 
     def solve(self, load: np.ndarray) -> Solution:
+        """Under nodal forces `load` (N,) [N]; errors as of `solver.solve_each`."""
+        (solution,) = self._solve((load,), (1.0,))
+        return solution
+
+    def solve_also_at_rest(
+        self, load: np.ndarray, at_rest: np.ndarray
+    ) -> tuple[Solution, Solution]:
+        """`solve`, and under other forces with all that is prescribed 0, by the same factors."""
+        turned, rested = self._solve((load, at_rest), (1.0, 0.0))
+        return turned, rested
+
+    def _solve(self, loads: Sequence[np.ndarray], times: Sequence[float]) -> list[Solution]:
         fixed = np.flatnonzero(self.mask.ravel())
-        model = self._model
-        return solve(
+        model, value = self._model, self.value.ravel()[fixed]
+        return solve_each(
             model.matrix,
-            load,
+            [Case(load, factor * value) for load, factor in zip(loads, times, strict=True)],
             fixed,
-            self.value.ravel()[fixed],
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
             model.is_flat,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -38,21 +38,41 @@ class Solution:
     solver: SolverKind
 
 
+@dataclass(frozen=True)
+class Case:
+    """Nodal forces (N,) [N] on a supported body, and values (k,) [mm] of what is prescribed."""
+
+    load: np.ndarray
+    values: np.ndarray
+
+
 def solve(
     matrix: csr_matrix,
-    load: np.ndarray,
+    case: Case,
     fixed: np.ndarray,
-    values: np.ndarray,
     corners: Callable[[], csr_matrix] | None = None,
     by: SolverKind | None = None,
     slow: bool = False,
 ) -> Solution:
-    """Solve K u = f with u[fixed] = values.
+    """Solve K u = f with u[fixed] = values; parameters and errors as `solve_each`."""
+    (solution,) = solve_each(matrix, (case,), fixed, corners, by, slow)
+    return solution
+
+
+def solve_each(
+    matrix: csr_matrix,
+    cases: Sequence[Case],
+    fixed: np.ndarray,
+    corners: Callable[[], csr_matrix] | None = None,
+    by: SolverKind | None = None,
+    slow: bool = False,
+) -> list[Solution]:
+    """Solve K u = f with u[fixed] = values, of all cases by the same factors.
 
     Parameters
     ----------
     matrix : (N, N) symmetric positive definite once the fixed unknowns are removed.
-    load : (N,) N. fixed : (k,) indices, unique. values : (k,) mm.
+    fixed : (k,) indices, unique.
     corners : makes `twolevel.corner_interpolation` of the mesh; without it only factors are possible.
     by : the way to solve; chosen by unknowns and memory when absent.
     slow : whether an iteration is expected to take long, so that factors are preferred.
@@ -62,34 +82,75 @@ def solve(
     SolveError : the solver failed or loses energy, so the part is not supported; its kinds are
         MemoryShortError, before anything is begun, and IterationError.
     """
-    u = np.zeros(matrix.shape[0])
-    u[fixed] = values
-    is_free = np.ones(len(u), bool)
+    is_free = np.ones(matrix.shape[0], bool)
     is_free[fixed] = False
     free = np.flatnonzero(is_free)
-    of_fixed = matrix @ u
-    right = np.where(is_free, load - of_fixed, 0.0)
-    entries = round(matrix.nnz * len(free) / len(u))
+    systems = [_System.of(matrix, case, fixed, is_free) for case in cases]
+    entries = round(matrix.nnz * len(free) / len(is_free))
     how = by or choose_solver(len(free), entries, corners is not None, slow)
-    error_energy = 0.0
     if how == "iterative" and corners is not None:
-        allowed = _allowed_energy(load, right, u, of_fixed)
         worth = inf if by else steps_of_factors(len(free), entries)
         try:
-            x, error_energy = iterate(matrix, right, is_free, corners(), allowed, worth)
-            u += x
+            found = [_iterated(matrix, system, is_free, corners(), worth) for system in systems]
         except IterationError:
             if worth == inf:
                 raise
             how = "direct"  # below, where the error holds none of the iteration's memory any more
-    if how == "direct":
-        u[free] = direct(condense(matrix, D=fixed, expand=False), right[free])
+        else:
+            return [
+                _checked(matrix, system, u, free, how, error_energy)
+                for system, (u, error_energy) in zip(systems, found, strict=True)
+            ]
+    right = [system.right[free] for system in systems]
+    each = direct(condense(matrix, D=fixed, expand=False), right)
+    solutions = []
+    for system, values in zip(systems, each, strict=True):
+        u = system.lift.copy()
+        u[free] = values
+        solutions.append(_checked(matrix, system, u, free, how))
+    return solutions
+
+
+@dataclass(frozen=True)
+class _System:
+    """A case's `load`; `lift`, its prescribed values, and K times it; `right`, on the free unknowns."""
+
+    load: np.ndarray
+    lift: np.ndarray
+    of_lift: np.ndarray
+    right: np.ndarray
+
+    @classmethod
+    def of(cls, matrix: csr_matrix, case: Case, fixed: np.ndarray, is_free: np.ndarray) -> _System:
+        lift = np.zeros(matrix.shape[0])
+        lift[fixed] = case.values
+        of_lift = matrix @ lift
+        return cls(case.load, lift, of_lift, np.where(is_free, case.load - of_lift, 0.0))
+
+
+def _iterated(
+    matrix: csr_matrix, system: _System, is_free: np.ndarray, corners: csr_matrix, worth: float
+) -> tuple[np.ndarray, float]:
+    """Unknowns (N,), and the energy of their error."""
+    allowed = _allowed_energy(system.load, system.right, system.lift, system.of_lift)
+    x, error_energy = iterate(matrix, system.right, is_free, corners, allowed, worth)
+    return system.lift + x, error_energy
+
+
+def _checked(
+    matrix: csr_matrix,
+    system: _System,
+    u: np.ndarray,
+    free: np.ndarray,
+    how: SolverKind,
+    error_energy: float = 0.0,
+) -> Solution:
     forces = matrix @ u
-    off = (forces - load)[free]
-    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
+    off = (forces - system.load)[free]
+    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(system.right)), ABOVE_ZERO)
     energy = max(float(u @ forces), ABOVE_ZERO)
     _refuse_lost(abs(float(u[free] @ off)) / energy, error_energy / energy, residual)
-    return Solution(u, forces - load, residual, len(free), how)
+    return Solution(u, forces - system.load, residual, len(free), how)
 
 
 def _allowed_energy(

@@ -151,6 +151,8 @@ def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: f
         found.add(level(limit + first * q**n), 0.0002 * 0.95**n)
         if n >= 2:
             assert found.K_Nm_per_rad * (1 - 2 * found.relative) <= limit
-    alone = ScaledEstimate(2.0, (2.5, 4.2), levels=found.levels, estimates=found.estimates)
+    alone = ScaledEstimate(
+        2.0, (2.5, 4.2), levels=found.levels, estimates=found.estimates, found=found.found
+    )
     # what the estimate alone would claim is less than what K has still to fall where it falls slowly
     assert (alone.K_Nm_per_rad * (1 - 2 * alone.relative) > limit) is (q > 0.5)

@@ -33,6 +33,7 @@ TOPICS = {
         "test_lobes_by_torsion",
         "test_lift_off_against_drawn_holes",
     ),
+    "Bolt holes, what they change solved alone": ("test_superposition",),
     "Honesty of the solid model's error estimate": ("test_estimate_honesty",),
 }
 """Headings in the page's order, and the test modules under each."""

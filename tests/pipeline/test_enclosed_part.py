@@ -11,18 +11,11 @@ from example_files import EXAMPLES
 from wrong_models import stiffen_solid_model, without_torsion
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
-from flexspline.fea.errors import NoBetterMeshError
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import (
-    load_cases,
-    lobes_by_torsion,
-    part_stiffness,
-    solid_lobes,
-    solid_torsion,
-)
+from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
 from flexspline.pipeline.analysis import stiffnesses, torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
@@ -91,7 +84,10 @@ def test_every_case_of_the_rim_is_answered(suite_cache: Path, monkeypatch) -> No
     def never(*given: object) -> None:
         raise AssertionError("a solid model was solved")
 
-    monkeypatch.setattr(load_cases, "solid_lobes", never)
+    cases = dict(load_cases.CASES)
+    for case, by in load_cases.CASES.items():
+        monkeypatch.setitem(cases, case, replace(by, with_holes=never) if by.solid else by)
+    monkeypatch.setattr(load_cases, "CASES", cases)
     part = model(CUP, suite_cache)
     K = {case: rim_stiffness(part, case) for case in RIM_CASES}
     assert all(k.half_width <= 0.005 and not k.shortfall for k in K.values())
@@ -139,7 +135,7 @@ def test_where_the_solid_model_fails_the_enclosure_stays(suite_cache: Path, monk
     def fails(*given: object, **named: object) -> None:
         raise ComputationError("no mesh")
 
-    case = replace(load_cases.CASES["lobes"], solid=fails)
+    case = replace(load_cases.CASES["lobes"], with_holes=fails)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
     by_torsion = rim_stiffness(model(WIDE, suite_cache), "lobes")
     assert by_torsion.half_width < 0.02
@@ -193,15 +189,14 @@ def test_a_wrong_solid_model_of_the_lobes_is_found_out(
 ) -> None:
     """With the solid model asked for by name too: K 30 % off is no answer."""
     without_torsion(monkeypatch)
-    case = load_cases.CASES["lobes"]
+    case, field = load_cases.CASES["lobes"], {"auto": "with_holes", "solid": "solid"}[solver]
+    solve = getattr(case, field)
 
-    def off(*given: object, **named: object) -> Stiffness:
-        assert case.solid is not None
-        return case.solid(*given, **named).times(1.3)
+    def off(part: PartModel) -> Stiffness:
+        return solve(part).times(1.3)
 
-    monkeypatch.setattr(
-        load_cases, "CASES", {**load_cases.CASES, "lobes": replace(case, solid=off)}
-    )
+    wrong = replace(case, **{field: off})
+    monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": wrong})
     with pytest.raises(NestingError, match="the solid model"):
         rim_stiffness(model(WIDE.changed({"solver.model": solver}), suite_cache), "lobes")
 
@@ -215,37 +210,6 @@ def test_a_wrong_K_b_in_torsion_is_found_out_under_the_lobes(
         rim_stiffness(model(WIDE, suite_cache), "lobes")
 
 
-def test_no_solid_model_of_the_lobes_follows_where_torsions_misses(
-    suite_cache: Path, monkeypatch
-) -> None:
-    """The holes are known no better there; where torsion's meets the tolerance one is tried."""
-    asked: list[float] = []
-
-    def solid(part: PartModel, known: float) -> Stiffness:
-        asked.append(known)
-        raise NoBetterMeshError(1.0, known)
-
-    case = replace(load_cases.CASES["lobes"], solid=solid)
-    monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
-    solve, part = load_cases.part_stiffness, model(WIDE, suite_cache)
-    K_b = solve(part)
-
-    def widened(to: float) -> Stiffness:
-        K = K_b.K_Nm_per_rad
-        return replace(K_b, lower_Nm_per_rad=K * (1 - to), upper_Nm_per_rad=K * (1 + to))
-
-    monkeypatch.setattr(load_cases, "part_stiffness", lambda part: widened(0.0295))
-    missed = rim_stiffness(part, "lobes")
-    assert 0.02 < missed.half_width < load_cases.NO_BETTER * 0.0295
-    assert missed.shortfall
-    assert not asked
-    monkeypatch.setattr(load_cases, "part_stiffness", lambda part: widened(0.0199))
-    monkeypatch.setattr(lobes_by_torsion, "ENTRY_DOUBT", 0.3)
-    missed = rim_stiffness(part, "lobes")
-    assert missed.half_width > 0.02
-    assert asked == [missed.half_width]
-
-
 @pytest.mark.long
 def test_lift_off_that_the_solid_model_cannot_solve_is_said(suite_cache: Path) -> None:
     """Without holes no two bodies of revolution answer in its place."""
@@ -254,21 +218,6 @@ def test_lift_off_that_the_solid_model_cannot_solve_is_said(suite_cache: Path) -
     found = stiffnesses(context, shaft=False)
     assert set(found.missing) == {"K_b_lobes_contact"}
     assert "meridian only" in found.missing["K_b_lobes_contact"].words
-
-
-def test_no_mesh_is_made_for_a_free_rim_that_it_could_not_know_better(
-    suite_cache: Path, monkeypatch
-) -> None:
-    """Where fTetWild makes the meshes, that takes minutes."""
-
-    def never(*given: object) -> None:
-        raise AssertionError("a mesh was made")
-
-    monkeypatch.setattr(solid_lobes, "rim_mesh", never)
-    monkeypatch.setattr(solid_lobes, "twisted_part", never)
-    part = model(CUP.changed({"solver.mesher": "tetwild"}), suite_cache)
-    with pytest.raises(NoBetterMeshError):
-        next(solid_lobes.lobe_meshes(part, supported=False, known=0.01))
 
 
 def recorded() -> tuple[list[float], Callable[[PartModel], Stiffness]]:

@@ -128,7 +128,7 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
     if kind == "tetwild":
         monkeypatch.setattr(PartMeshes, "layered", lambda self, spec: None)
     monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
-    design = DESIGN.changed({"solver.tolerance_pct": 0.4})
+    design = DESIGN.changed({"solver.tolerance_pct": 0.4, "solver.model": "solid"})
     model = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
     by_mesher: list[MeshSpec] = []
 
@@ -224,7 +224,7 @@ def test_a_first_mesh_in_layers_that_is_very_large_is_the_only_one(
     """A second one would take longer to make than is left to solve it."""
     monkeypatch.setattr(solid_torsion, "LAYERED_ELEMENTS", 100)
     monkeypatch.setattr(solid_torsion, "LAYERED_ALONE", most)
-    design = DESIGN.changed({"solver.tolerance_pct": 0.1})
+    design = DESIGN.changed({"solver.tolerance_pct": 0.1, "solver.model": "solid"})
     part = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
     found = solid_torsion.twisted(part, part.tolerance, kinds=("layered",)).stiffness
     assert (len(found.levels) == 1) is alone

@@ -73,7 +73,7 @@ def test_it_is_narrower_than_the_enclosure_and_within(solver: str, suite_cache: 
 def with_held(monkeypatch: pytest.MonkeyPatch, solve: object) -> None:
     """K held by `solve`, and not by torsion."""
     without_torsion(monkeypatch)
-    case = replace(load_cases.CASES["lobes"], solid=solve)
+    case = replace(load_cases.CASES["lobes"], solid=solve, with_holes=solve)
     monkeypatch.setattr(load_cases, "CASES", {**load_cases.CASES, "lobes": case})
 
 
@@ -102,8 +102,8 @@ def test_a_wrong_K_held_stops_it(suite_cache: Path, monkeypatch) -> None:
     case = load_cases.CASES["lobes"]
 
     def off(*given: object, **named: object) -> Stiffness:
-        assert case.solid is not None
-        return case.solid(*given, **named).times(1.3)
+        assert case.with_holes is not None
+        return case.with_holes(*given, **named).times(1.3)
 
     with_held(monkeypatch, off)
     with pytest.raises(NestingError, match="the solid model"):

@@ -13,7 +13,7 @@ from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.elements import NODES, quadratic_mesh, reference_values
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.solver import solve
+from flexspline.fea.solid.solver import Case, solve
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.unfold import folded, unfolded
 from flexspline.fea.types import Elastic
@@ -82,7 +82,7 @@ def test_an_unsupported_body_is_refused_with_a_reason() -> None:
     load[2] = 1.0
     none = np.empty(0, int)
     with pytest.raises(SolveError, match="may be unsupported"):
-        solve(model.matrix, load, none, np.empty(0))
+        solve(model.matrix, Case(load, np.empty(0)), none)
 
 
 def test_superlu_stands_in_for_pardiso(monkeypatch: pytest.MonkeyPatch) -> None:

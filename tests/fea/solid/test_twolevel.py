@@ -23,7 +23,7 @@ from flexspline.fea.solid.iteration import conjugate_gradients
 from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, ellipse, lobes, torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
-from flexspline.fea.solid.solver import ITERATION_ENERGY, solve
+from flexspline.fea.solid.solver import ITERATION_ENERGY, Case, solve
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Elastic, TetMesh
@@ -134,7 +134,7 @@ def test_an_unsupported_body_is_found_by_iteration_too(wedge: Model) -> None:
     none = np.empty(0, int)
     p = twolevel.corner_interpolation(wedge.mesh, wedge.frames)
     with pytest.raises(SolveError, match="unsupported"):
-        solve(wedge.matrix, load, none, np.empty(0), lambda: p, "iterative")
+        solve(wedge.matrix, Case(load, np.empty(0)), none, lambda: p, "iterative")
 
 
 def test_iteration_without_mkl(wedge: Model, monkeypatch: pytest.MonkeyPatch) -> None:

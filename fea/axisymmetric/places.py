@@ -1,0 +1,53 @@
+"""Fields on a meridian mesh, looked at anywhere in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from skfem import MappingAffine, MeshTri
+from skfem.element import DiscreteField
+
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.axisymmetric.space import Space
+
+
+@dataclass(frozen=True)
+class Places:
+    """Points (k,) in the triangles of a space, by straight edges.
+
+    Attributes
+    ----------
+    dofs : (6, k) numbers of the triangle that each lies in.
+    shapes : its six functions there, as scikit-fem has them.
+    """
+
+    dofs: np.ndarray
+    shapes: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, space: Space, r: np.ndarray, z: np.ndarray) -> Places:
+        """Points at r, z (k,) [mm].
+
+        Raises
+        ------
+        MeshingError : one is outside of the mesh.
+        """
+        mesh, element = space.basis.mesh, space.basis.elem
+        straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
+        mapping = MappingAffine(straight)
+        try:
+            triangle = straight.element_finder()(r, z)
+        except ValueError as fault:  # scikit-fem's
+            raise MeshingError(f"a place is not on the meridian: {fault}") from fault
+        local = mapping.invF(np.stack([r, z])[:, :, None], tind=triangle)
+        shapes = [element.gbasis(mapping, local, i, tind=triangle)[0] for i in range(6)]
+        return cls(space.basis.element_dofs[:, triangle], tuple(shapes))
+
+    def see(self, field: np.ndarray) -> Any:
+        """A field (count,) there: scikit-fem's, its values (k,) and slopes `grad` (2, k)."""
+        numbered = list(zip(field[self.dofs], self.shapes, strict=True))
+        value = sum(own * np.asarray(shape)[:, 0] for own, shape in numbered)
+        slope = sum(own * shape.grad[:, :, 0] for own, shape in numbered)
+        return DiscreteField(value, grad=slope)

@@ -1,0 +1,234 @@
+"""What bolt holes change of a part, solved alone.
+
+The part without its holes is a body of revolution, solved on its meridian: its field is u₀. The part's own
+field is u₀ + v: v is 0 where the part is held or turned, and its tractions take those of u₀ off the walls of
+the holes (Bueckner's superposition, Trans. ASME 80 (1958) 1225-1230, there of cracks). With E, twice the
+energy that u₀ has in the material of the holes, twice the energy of the part turned by 1 rad, and the work of
+a given load, are
+
+    K = K₀ − E − a(v, v),    W = W₀ + E + a(v, v).
+
+A finite element field v_h stores less than v, by a(v − v_h, v − v_h): what it gives is above K. The errors
+far from the holes, most of those of a solid model, are not in it. docs/theory.md has the proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from skfem import ElementTriP2
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
+
+from flexspline.fea.axisymmetric.lobes import SolvedLobes, lobe_harmonic
+from flexspline.fea.axisymmetric.places import Places
+from flexspline.fea.axisymmetric.recovery import (
+    R_THETA,
+    RR,
+    RZ,
+    THETA_THETA,
+    THETA_Z,
+    ZZ,
+    Parts,
+    stress_of,
+)
+from flexspline.fea.axisymmetric.torsion import SolvedTorsion
+from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
+from flexspline.fea.solid.waves import CyclicWave, waves
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.part import Part
+from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface, Swept, part_surfaces
+
+WALL_DEGREE = 8
+"""Of quadrature on the walls: K of six hats and shafts by degree 6 and 12 differ by 2e-6."""
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Points (k, q) on the walls of the holes that a mesh's sector has.
+
+    Attributes
+    ----------
+    facets : (k, 6) the mesh's. shapes : (6, q) of a facet's nodes.
+    r, phi, z : of the points [mm, rad].
+    area : (3, k, q) outward normal times weight, along r, φ, z [mm²].
+    axes : (3, 3, k, q) the directions of r, φ, z, each Cartesian.
+    """
+
+    mesh: TetMesh
+    facets: np.ndarray
+    shapes: np.ndarray
+    r: np.ndarray
+    phi: np.ndarray
+    z: np.ndarray
+    area: np.ndarray
+    axes: np.ndarray
+
+    @classmethod
+    def of(cls, mesh: TetMesh, part: Part) -> Walls:
+        """Of a mesh of a part's sector."""
+        facets = wall_facets(mesh, part_surfaces(part, mesh.sector_deg))
+        points, weights = get_quadrature(RefTri, WALL_DEGREE)
+        element = ElementTriP2()
+        each = [element.lbasis(points, i) for i in range(6)]
+        shapes, slopes = np.stack([s for s, _ in each]), np.stack([s for _, s in each], axis=1)
+        nodes = mesh.nodes[facets]
+        x, y, z = np.einsum("aq,kad->dkq", shapes, nodes)
+        along = np.einsum("iaq,kad->ikqd", slopes, nodes)
+        area = np.cross(along[0], along[1]) * weights[:, None]
+        phi, nought = np.arctan2(y, x), np.zeros_like(x)
+        c, s = np.cos(phi), np.sin(phi)
+        axes = np.array([[c, s, nought], [-s, c, nought], [nought, nought, nought + 1]])
+        return cls(
+            mesh,
+            facets,
+            shapes,
+            np.hypot(x, y),
+            phi,
+            z,
+            np.einsum("cdkq,kqd->ckq", axes, area),
+            axes,
+        )
+
+    def places(self, space: Any) -> Places:
+        """The points in the meridian; raises MeshingError where they leave it."""
+        return Places.of(space, self.r.ravel(), self.z.ravel())
+
+    def pull(self, stress: Parts) -> np.ndarray:
+        """Traction times area (3, k, q) along r, φ, z [N] of stresses [MPa] at the points."""
+        n_r, n_t, n_z = self.area
+        part = {k: np.asarray(v).reshape(self.r.shape) for k, v in stress.items()}
+        rr, tt, zz, rz, rt, tz = (
+            part.get(k, 0.0) for k in (RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z)
+        )
+        return np.stack(
+            [
+                rr * n_r + rt * n_t + rz * n_z,
+                rt * n_r + tt * n_t + tz * n_z,
+                rz * n_r + tz * n_t + zz * n_z,
+            ]
+        )
+
+    def forces(self, pull: np.ndarray) -> np.ndarray:
+        """Nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
+        found = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
+        each = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
+        np.add.at(found, self.facets, each)
+        return found
+
+
+def wall_facets(mesh: TetMesh, surfaces: Sequence[Surface]) -> np.ndarray:
+    """Facets (k, 6) that lie on no surface of revolution and no named patch, but on another surface."""
+    unnamed = mesh.facets[mesh.facet_patch == mesh.patches.index("")]
+    centres = mesh.nodes[unnamed].mean(axis=1)
+    off = np.array([np.linalg.norm(s.project(centres) - centres, axis=1) for s in surfaces])
+    swept = np.array([isinstance(s, Swept) for s in surfaces])
+    # a blind hole may end in the plane of a step
+    return unnamed[off[~swept].min(axis=0) < off[swept].min(axis=0) - ON_SURFACE_MM]
+
+
+@dataclass(frozen=True)
+class WholeTurned:
+    """A part with bolt holes, and its torsion solved without them.
+
+    The holes' material touches the held face and not the driven one: E is then the work of the walls.
+    """
+
+    part: Part
+    solved: SolvedTorsion
+
+
+@dataclass(frozen=True)
+class WholeUnderLobes:
+    """A part with bolt holes, and what the lobe load does to it without them."""
+
+    part: Part
+    solved: SolvedLobes
+
+
+@dataclass(frozen=True)
+class TurnedWalls:
+    """What takes u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], for a turn of 1 rad.
+
+    `energy` : E of the whole part [N·mm].
+    """
+
+    forces: np.ndarray
+    energy: float
+
+
+def turned_walls(mesh: TetMesh, whole: WholeTurned, material: Elastic) -> TurnedWalls:
+    """Of a mesh of the part's sector.
+
+    Raises
+    ------
+    MeshingError : a wall leaves the meridian.
+    """
+    walls, turn = Walls.of(mesh, whole.part), whole.solved.turn
+    psi = walls.places(turn.space).see(turn.psi)
+    shear = material.mu * walls.r.ravel() * psi.grad
+    pull = walls.pull({R_THETA: shear[0], THETA_Z: shear[1]})
+    turned = walls.r * np.asarray(psi).reshape(walls.r.shape)
+    energy = -float(np.sum(pull[TANGENTIAL] * turned)) * 360 / mesh.sector_deg
+    return TurnedWalls(walls.forces(-pull), energy)
+
+
+@dataclass(frozen=True)
+class WallWave:
+    """What takes a wave of u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], complex.
+
+    `energy` : the wave's part of E, of the whole part [N·mm].
+    """
+
+    wave: CyclicWave
+    forces: np.ndarray
+    energy: float
+
+
+def lobed_walls(
+    mesh: TetMesh, repeats: int, whole: WholeUnderLobes, material: Elastic
+) -> Iterator[WallWave]:
+    """The waves of the lobe load on a mesh of half a repeat, or of half the part (`repeats` 1).
+
+    Raises
+    ------
+    MeshingError : a wall leaves the meridian.
+    """
+    walls = Walls.of(mesh, whole.part)
+    places = walls.places(whole.solved.space)
+    of_wave: dict[CyclicWave, list[np.ndarray]] = {}
+    for number, amplitude in enumerate(whole.solved.amplitudes):
+        n = 2 * number
+        harmonic = lobe_harmonic(n)
+        seen = {c: places.see(amplitude[:, c]) for c in harmonic.components}
+        stress = stress_of(harmonic, material, walls.r.ravel(), seen)
+        (wave,) = waves((n,), repeats)
+        cosine, sine = (wave.of(partial(_around, f, n), walls.phi) for f in (np.cos, np.sin))
+        even = {k: stress[k] for k in (R_THETA, THETA_Z)}
+        odd = {k: part for k, part in stress.items() if k not in even}
+        pull = cosine * walls.pull(even) - sine * walls.pull(odd)
+        moved = _moved(seen, cosine, sine)
+        sums = of_wave.setdefault(wave, [np.zeros_like(pull, complex) for _ in range(2)])
+        sums[0] += pull
+        sums[1] += moved
+    for wave, (pull, moved) in of_wave.items():
+        work = float(np.sum(pull.conjugate() * moved).real)
+        energy = -work * wave.times * 360 / mesh.sector_deg
+        yield WallWave(wave, walls.forces(-pull), energy)
+
+
+def _around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarray) -> np.ndarray:
+    return function(n * phi)
+
+
+def _moved(seen: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
+    """Displacements (3, k, q) along r, φ, z of amplitudes U, V, W: −U sin nφ, V cos nφ, −W sin nφ."""
+    found = np.zeros((3, *cosine.shape), complex)
+    for component, factor in ((RADIAL, -sine), (TANGENTIAL, cosine), (AXIAL, -sine)):
+        if component in seen:
+            found[component] = factor * np.asarray(seen[component]).reshape(cosine.shape)
+    return found

@@ -1,0 +1,88 @@
+"""The lobe cases of a flexspline with bolt holes: what the holes change, by meshes as coarse as torsion's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from flexspline.fea.axisymmetric.lobes import solved_lobes
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.errors import SolidError, TooManyElementsError
+from flexspline.fea.solid.lobes import lobe_stiffness
+from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE
+from flexspline.fea.solid.superposition import WholeUnderLobes
+from flexspline.fea.types import Stiffness, TetMesh
+from flexspline.geometry.symmetry import sector_of
+from flexspline.pipeline.part_meshes import PartMeshes
+from flexspline.pipeline.part_stiffness import rim_mesh
+from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.solid_lobes import MOST_LOBE_ELEMENTS
+from flexspline.pipeline.solid_torsion import (
+    RIM_ELEMENTS,
+    SOLID_SECONDS,
+    WHOLE_SHARE,
+    copies_in_rim,
+)
+
+FINER_EDGES = (0.6, 0.36)
+"""Edges of the second and third mesh over those of the first."""
+
+
+def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
+    """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
+
+    Raises
+    ------
+    ComputationError, MemoryError
+    """
+    context = flexspline.context
+
+    def make() -> Stiffness:
+        with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
+            return lobe_stiffness(
+                _meshes(flexspline),
+                flexspline.material,
+                supported,
+                flexspline.tolerance,
+                sector_of(flexspline.part, "lobes").label,
+                lambda text: context.progress.note(f"  {text}"),
+                SOLID_SECONDS,
+                _whole(flexspline, supported),
+            )
+
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
+    return context.cache.get("lobes with holes", inputs, make, is_lasting)[0]
+
+
+def _whole(flexspline: PartModel, supported: bool) -> WholeUnderLobes:
+    part = flexspline.part
+    width = WHOLE_SHARE * flexspline.tolerance
+    outline, deadline = part.without_holes().meridian, Deadline(STAGE_SECONDS)
+    return WholeUnderLobes(
+        part, solved_lobes(outline, flexspline.material, supported, width, deadline)
+    )
+
+
+def _meshes(flexspline: PartModel) -> Iterator[tuple[TetMesh, float]]:
+    """Coarse to fine, of half a repeat; each with its scale of the error estimate.
+
+    Raises
+    ------
+    SolidError : the next one would be too large, or fails a check.
+    """
+    yield rim_mesh(flexspline).mesh, HOLES_ERROR_SCALE
+    if not flexspline.is_swept:
+        return
+    meshes, most = PartMeshes(flexspline), MOST_LOBE_ELEMENTS / copies_in_rim(flexspline)
+    first = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+    for edges in FINER_EDGES:
+        try:
+            swept = meshes.swept(first.scaled(edges), most_elements=most)
+        except TooManyElementsError as fault:
+            elements = fault.elements * copies_in_rim(flexspline)
+            raise SolidError(
+                f"it would have {elements:.0f} elements, at most {MOST_LOBE_ELEMENTS}"
+            ) from None
+        if swept is None:
+            raise SolidError("the swept mesh fails a check")
+        yield swept.mesh, HOLES_ERROR_SCALE
