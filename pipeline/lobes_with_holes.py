@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 from flexspline.fea.axisymmetric.lobes import solved_lobes
@@ -10,7 +11,7 @@ from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.lobes import lobe_stiffness
 from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE
-from flexspline.fea.solid.superposition import WholeUnderLobes
+from flexspline.fea.solid.superposition import WholeUnderLobes, at_holes
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
@@ -47,20 +48,23 @@ def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
                 sector_of(flexspline.part, "lobes").label,
                 lambda text: context.progress.note(f"  {text}"),
                 SOLID_SECONDS,
-                _whole(flexspline, supported),
+                _wholes(flexspline, supported),
             )
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
     return context.cache.get("lobes with holes", inputs, make, is_lasting)[0]
 
 
-def _whole(flexspline: PartModel, supported: bool) -> WholeUnderLobes:
+def _wholes(flexspline: PartModel, supported: bool) -> Iterator[WholeUnderLobes]:
+    """The part without its holes, better and better."""
     part = flexspline.part
-    width = WHOLE_SHARE * flexspline.tolerance
-    outline, deadline = part.without_holes().meridian, Deadline(STAGE_SECONDS)
-    return WholeUnderLobes(
-        part, solved_lobes(outline, flexspline.material, supported, width, deadline)
-    )
+    box, longest_mm = at_holes(part)
+    each = solved_lobes(
+        part.without_holes().meridian, flexspline.material, supported,
+        WHOLE_SHARE * flexspline.tolerance, box, longest_mm, Deadline(STAGE_SECONDS),
+    )  # fmt: skip
+    for coarser, finer in pairwise(each):
+        yield WholeUnderLobes(part, finer, coarser)
 
 
 def _meshes(flexspline: PartModel) -> Iterator[tuple[TetMesh, float]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths, edge_middles
@@ -13,6 +15,30 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
     New nodes of fillets are put on the exact arc.
     """
     return refined_with_parents(mesh, marked)[0]
+
+
+@dataclass(frozen=True)
+class Box:
+    """Ranges of r and z [mm] in a meridian."""
+
+    r: tuple[float, float]
+    z: tuple[float, float]
+
+    def meets(self, mesh: MeridianMesh) -> np.ndarray:
+        """Mask (m,) of the triangles whose own ranges meet it."""
+        corner = mesh.points[mesh.triangles]
+        low, high = corner.min(axis=1), corner.max(axis=1)
+        ends = np.array([self.r, self.z])
+        return np.asarray(((high > ends[:, 0]) & (low < ends[:, 1])).all(axis=1))
+
+
+def refined_within(mesh: MeridianMesh, box: Box, longest_mm: float) -> MeridianMesh:
+    """The mesh refined until no triangle that meets the box has a longer edge."""
+    while True:
+        long = edge_lengths(mesh.points, mesh.triangles).max(axis=1) > longest_mm
+        if not (marked := long & box.meets(mesh)).any():
+            return mesh
+        mesh = refined(mesh, marked)
 
 
 def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined, refined_twice
+from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice, refined_within
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
@@ -14,7 +16,7 @@ from flexspline.fea.axisymmetric.torsion_fields import Bracket, Turn, across_fro
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refine
-from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
 
 TORSION_BULK = 0.75
@@ -22,6 +24,9 @@ TORSION_BULK = 0.75
 TORSION_TWICE_SHARE = 0.5
 """Share of the gap whose triangles are refined twice a round: they lie where the stress is singular, and K to
 0.2 % takes two thirds of the time."""
+
+MOST_TRIANGLES_WITHIN = 12_000
+"""Of a third mesh, or a later one, that is fine in a box: 0.5 s."""
 
 
 def torsional_stiffness(
@@ -47,7 +52,9 @@ def torsional_stiffness(
 
     Source: J. H. Michell, Proc. London Math. Soc. 31 (1899) 130-146, for the two fields.
     """
-    return solved_torsion(outline, material, driven, relative_width, deadline).stiffness
+    boundary, mesh = sorted_boundary(outline, driven), _first_mesh(outline, driven)
+    found = _Bounds(boundary, relative_width, material)
+    return found.stiffness(refine(found, mesh, deadline, MOST_TRIANGLES))
 
 
 @dataclass(frozen=True)
@@ -58,43 +65,48 @@ class SolvedTorsion:
     turn: Turn
 
 
-def solved_torsion(
+def solved_torsions(
     outline: Meridian,
     material: Elastic,
     driven: str,
     relative_width: float,
+    box: Box,
+    longest_mm: float,
     deadline: Deadline = NO_DEADLINE,
-) -> SolvedTorsion:
-    """`torsional_stiffness` with its field."""
-    boundary = sorted_boundary(outline, driven)
-    mesh = triangulate(outline)
+) -> Iterator[SolvedTorsion]:
+    """`torsional_stiffness` with its field, on meshes whose triangles in a box become finer and finer.
+
+    Edges there are `longest_mm` at most on the first, and half as long on each mesh after it, until a third
+    one would have more than MOST_TRIANGLES_WITHIN triangles.
+
+    Raises
+    ------
+    PatchError, MeshingError, OutOfTimeError
+    """
+    boundary, mesh = sorted_boundary(outline, driven), _first_mesh(outline, driven)
+    found = _Bounds(boundary, relative_width, material)
+    for number in count():
+        mesh = refined_within(mesh, box, longest_mm)
+        if number > 1 and mesh.elements > MOST_TRIANGLES_WITHIN:
+            return
+        shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
+        yield SolvedTorsion(found.stiffness(shortfall), found.turn)
+        mesh, longest_mm = found.mesh, longest_mm / 2
+
+
+def _first_mesh(outline: Meridian, driven: str) -> MeridianMesh:
+    mesh, boundary = triangulate(outline), sorted_boundary(outline, driven)
     while (near := across_from_axis(mesh, boundary)).any():
         mesh = refined(mesh, near)
-    per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
-    found = _Bounds(boundary, relative_width, per_G)
-    shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
-    stiffness = Stiffness(
-        K_Nm_per_rad=(found.lower + found.upper) / 2 * per_G,
-        lower_Nm_per_rad=found.lower * per_G,
-        upper_Nm_per_rad=found.upper * per_G,
-        guaranteed=True,
-        model="axisymmetric",
-        symmetry="body of revolution",
-        method=(
-            "energy bounds from both sides: minimum potential energy above, minimum complementary energy "
-            "below (Michell's two fields), exact fillet arcs enclosed"
-        ),
-        levels=tuple(found.levels),
-        shortfall=shortfall,
-    )
-    return SolvedTorsion(stiffness, found.turn)
+    return mesh
 
 
 class _Bounds:
     """Of K/G [mm³], by the meshes so far, and those meshes' own figures."""
 
-    def __init__(self, boundary: Boundary, relative_width: float, per_G: float) -> None:
-        self._boundary, self._relative_width, self._per_G = boundary, relative_width, per_G
+    def __init__(self, boundary: Boundary, relative_width: float, material: Elastic) -> None:
+        self._boundary, self._relative_width = boundary, relative_width
+        self._per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
         self.lower, self.upper = 0.0, np.inf
         self.levels: list[MeshLevel] = []
 
@@ -103,7 +115,7 @@ class _Bounds:
         # every mesh's bounds hold, so the best of all do
         self.lower, self.upper = max(self.lower, found.lower), min(self.upper, found.upper)
         self.levels.append(_level(mesh, found, self._per_G))
-        self._share, self.turn = found.share, found.turn
+        self._share, self.turn, self.mesh = found.share, found.turn, mesh
 
     @property
     def met(self) -> bool:
@@ -112,6 +124,24 @@ class _Bounds:
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         return refined_twice(
             mesh, bulk(self._share, TORSION_BULK), bulk(self._share, TORSION_TWICE_SHARE)
+        )
+
+    def stiffness(self, shortfall: Shortfall) -> Stiffness:
+        """K between its bounds."""
+        lower, upper = self.lower * self._per_G, self.upper * self._per_G
+        return Stiffness(
+            K_Nm_per_rad=(lower + upper) / 2,
+            lower_Nm_per_rad=lower,
+            upper_Nm_per_rad=upper,
+            guaranteed=True,
+            model="axisymmetric",
+            symmetry="body of revolution",
+            method=(
+                "energy bounds from both sides: minimum potential energy above, minimum complementary energy "
+                "below (Michell's two fields), exact fillet arcs enclosed"
+            ),
+            levels=tuple(self.levels),
+            shortfall=shortfall,
         )
 
 

@@ -77,12 +77,14 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
 class SolvedCorrection:
     """v_h of `fea.solid.superposition`, (n, 3) Cartesian mm.
 
-    `lost` : E + a(v_h, v_h) of the whole part [N·mm]. `unknowns` : of all waves together.
+    `lost` : E + a(v_h, v_h) of the whole part [N·mm]. `doubt` : how far that moves, to first order, from u₀
+    on the coarser mesh at the holes. `unknowns` : of all waves together.
     """
 
     mesh: TetMesh
     displacement: np.ndarray
     lost: float
+    doubt: float
     unknowns: int
 
 
@@ -95,15 +97,20 @@ def torsion_and_correction(
     ------
     SolveError : as `torsion`. MeshingError : as `turned_walls`.
     """
-    walls = turned_walls(model.mesh, whole, model.material)
+    walls, before = (
+        turned_walls(model.mesh, whole.part, solved, model.material)
+        for solved in (whole.solved, whole.coarser)
+    )
     supports = _turned(model, driven)
     own = model.frames.to_cylindrical(walls.forces).ravel()
     turned, corrected = supports.solve_also_at_rest(np.zeros(model.matrix.shape[0]), own)
     v = corrected.unknowns
     lost = walls.energy + float(v @ (model.matrix @ v)) * model.copies
     displacement = model.frames.to_cartesian(v.reshape(-1, 3))
+    work = float(np.sum((walls.forces - before.forces) * displacement)) * model.copies
+    doubt = abs(walls.energy - before.energy + 2 * work)
     return _balanced(model, driven, turned), SolvedCorrection(
-        model.mesh, displacement, lost, corrected.free_count
+        model.mesh, displacement, lost, doubt, corrected.free_count
     )
 
 
@@ -162,13 +169,20 @@ def lobe_correction(model: Model, supported: bool, whole: WholeUnderLobes) -> So
     ------
     SolveError. MeshingError : as `lobed_walls`.
     """
-    found, lost = [], 0.0
-    for walls in lobed_walls(model.mesh, repeats_of(model.mesh), whole, model.material):
+    repeats, found, lost, moved = repeats_of(model.mesh), [], 0.0, 0.0
+    both = (
+        lobed_walls(model.mesh, repeats, whole.part, solved, model.material)
+        for solved in (whole.solved, whole.coarser)
+    )
+    for walls, before in zip(*both, strict=False):  # the first waves, where one has more harmonics
         supports = _under_lobes(model, walls.wave, supported)
         found.append(supports.solve(model.frames.to_cylindrical(walls.forces)))
         lost += walls.energy + found[-1].stored
+        v = model.frames.to_cartesian(found[-1].values)
+        work = float(np.sum((walls.forces - before.forces).conjugate() * v).real)
+        moved += walls.energy - before.energy + 2 * work * walls.wave.times * model.copies
     solved = _of_waves(model, found, "antisymmetric")
-    return SolvedCorrection(solved.mesh, solved.displacement, lost, solved.dofs)
+    return SolvedCorrection(solved.mesh, solved.displacement, lost, abs(moved), solved.dofs)
 
 
 def _under_lobes(model: Model, wave: CyclicWave, supported: bool) -> WaveSupports:

@@ -94,7 +94,7 @@ def lobe_stiffness(
     symmetry: str,
     progress: Callable[[str], None],
     limit_s: float = inf,
-    whole: WholeUnderLobes | None = None,
+    wholes: Iterator[WholeUnderLobes] | None = None,
 ) -> Stiffness:
     """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
 
@@ -104,20 +104,21 @@ def lobe_stiffness(
     two say (see `fea.solid.stiffness`). Where a mesh after the first fails, or would end `limit_s` seconds
     after that was made, or there are no more, `shortfall` says so.
 
-    `whole` : the part without its holes under the load, where only what these change is asked of the meshes.
+    `wholes` : the part without its holes under the load, solved better and better, one for each mesh: where
+    only what holes change is asked of the meshes.
 
     Raises
     ------
     ComputationError, MemoryError : of the first mesh.
     """
     mesh, usual = next(meshes)
-    estimate = ScaledEstimate(usual, ERROR_SCALES if whole is None else HOLES_ERROR_SCALES)
+    estimate = ScaledEstimate(usual, ERROR_SCALES if wholes is None else HOLES_ERROR_SCALES)
     rest = (mesh for mesh, _ in meshes)
-    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate, whole)
+    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate, wholes)
     shortfall = refine(found, mesh, Deadline(limit_s))
     bounds = estimate.at_given_torque()
-    off = whole.solved.stiffness.width_Nm_per_rad / 2 if whole else 0.0
-    of = f"{OF_THE_HOLES} " if whole else ""
+    off = found.doubt * bounds.K
+    of = f"{OF_THE_HOLES} " if wholes else ""
     return Stiffness(
         K_Nm_per_rad=bounds.K,
         lower_Nm_per_rad=bounds.lower - off,
@@ -135,7 +136,7 @@ def lobe_stiffness(
     )
 
 
-@dataclass(frozen=True)
+@dataclass
 class _SolidLobes:
     """The case on one mesh after the other, the rest after the first; what they gave is in `estimate`."""
 
@@ -146,15 +147,17 @@ class _SolidLobes:
     symmetry: str
     progress: Callable[[str], None]
     estimate: ScaledEstimate
-    whole: WholeUnderLobes | None
+    wholes: Iterator[WholeUnderLobes] | None
+    whole: WholeUnderLobes | None = None
+    doubt: float = 0.0
+    """Of K, relative, by the part without its holes."""
 
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
             model = Model.of(half_repeat(mesh), self.material)
+            wholes = self.wholes
             elements = (
-                self._solve_all(model)
-                if self.whole is None
-                else self._solve_holes(model, self.whole)
+                self._solve_all(model) if wholes is None else self._solve_holes(model, wholes)
             )
         self.progress(f"{elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}")
 
@@ -164,21 +167,23 @@ class _SolidLobes:
         self.estimate.add(level_of(solved), error.relative)
         return solved.mesh.elements
 
-    def _solve_holes(self, model: Model, whole: WholeUnderLobes) -> int:
-        found = lobe_correction(model, self.supported, whole)
+    def _solve_holes(self, model: Model, wholes: Iterator[WholeUnderLobes]) -> int:
+        self.whole = whole = next(wholes, self.whole)
+        assert whole is not None
+        found, known = lobe_correction(model, self.supported, whole), whole.solved.stiffness
         error = energy_error(found.mesh, found.displacement, self.material)
-        work = TORQUE**2 / (whole.solved.stiffness.K_Nm_per_rad * NMM_PER_NM) + found.lost
+        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM) + found.lost
         K = TORQUE**2 / work / NMM_PER_NM
         estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
         level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
         self.estimate.add(level, float(estimate))
+        self.doubt = known.half_width + found.doubt / work
         return found.mesh.elements
 
     @property
     def half(self) -> float:
         """Half the bounds' distance over K."""
-        off = self.whole.solved.stiffness.half_width if self.whole else 0.0
-        return self.estimate.relative + off
+        return self.estimate.relative + self.doubt
 
     @property
     def met(self) -> bool:

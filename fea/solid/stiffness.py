@@ -13,7 +13,7 @@ Where a finer mesh fails, is too large or is out of time, the answer is that of 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -114,11 +114,12 @@ def solid_stiffness(
     symmetry: str,
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
-    whole: WholeTurned | None = None,
+    wholes: Iterator[WholeTurned] | None = None,
 ) -> RefinedStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
-    `whole` : the part without its holes, where only what these change is asked of the meshes.
+    `wholes` : the part without its holes, solved better and better, one for each mesh: where only what holes
+    change is asked of the meshes.
 
     Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
     the last has more elements than `meshes` allows, or MAX_LEVELS are solved.
@@ -127,7 +128,7 @@ def solid_stiffness(
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(meshes, material, driven, tolerance, progress, deadline, whole)
+    found = _SolidTorsion(meshes, material, driven, tolerance, progress, deadline, wholes)
     mesh = found.mesh(meshes.first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
@@ -143,14 +144,16 @@ class _SolidTorsion:
 
     def __init__(
         self, meshes: MeshSequence, material: Elastic, driven: str, tolerance: float,
-        progress: Callable[[str], None], deadline: Deadline, whole: WholeTurned | None,
+        progress: Callable[[str], None], deadline: Deadline,
+        wholes: Iterator[WholeTurned] | None,
     ) -> None:  # fmt: skip
         self._sequence, self._spec = meshes, meshes.first
         self._material, self._driven = material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
-        self._whole = whole
-        if whole is None:
+        self._wholes, self._doubt = wholes, 0.0
+        self._whole: WholeTurned | None = None
+        if wholes is None:
             self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
         else:
             self.estimate = ScaledEstimate(HOLES_ERROR_SCALE, HOLES_ERROR_SCALES)
@@ -167,10 +170,10 @@ class _SolidTorsion:
             # a turn that is waited for, or another program, is no work
             began_s = self._deadline.working()
             model = Model.of(mesh, self._material)
-            if self._whole is None:
+            if self._wholes is None:
                 self._solve_all(model)
             else:
-                self._solve_holes(model, self._whole)
+                self._solve_holes(model, self._wholes)
             self._last_s += self._deadline.working() - began_s
         self.meshes.append(mesh)
         self._progress(f"{mesh.elements} elements, K ± {percent(self.half)}")
@@ -181,19 +184,23 @@ class _SolidTorsion:
         self.solved, self._errors = solved, error.error
         self.estimate.add(level_of(solved), error.relative)
 
-    def _solve_holes(self, model: Model, whole: WholeTurned) -> None:
+    def _solve_holes(self, model: Model, wholes: Iterator[WholeTurned]) -> None:
+        self._whole = whole = next(wholes, self._whole)
+        assert whole is not None
         solved, correction = torsion_and_correction(model, self._driven, whole)
         error = energy_error(model.mesh, correction.displacement, self._material)
         K = whole.solved.stiffness.K_Nm_per_rad - correction.lost / NMM_PER_NM
         estimate = error.error.sum() * model.copies / NMM_PER_NM
         self.solved, self._errors = solved, error.error
+        own = whole.solved.stiffness.width_Nm_per_rad / 2
+        self._doubt = own + correction.doubt / NMM_PER_NM
         self.estimate.add(level_of(solved), float(estimate / K), K)
 
     @property
     def half(self) -> float:
         """Half the bounds' distance over the K that is reported."""
-        half = self.estimate.relative / (1 - self.estimate.relative)
-        return half if self._whole is None else half + self._whole.solved.stiffness.half_width
+        share = self.estimate.relative
+        return (share + self._doubt / self.estimate.K_Nm_per_rad) / (1 - share)
 
     @property
     def met(self) -> bool:
@@ -222,11 +229,10 @@ class _SolidTorsion:
             "recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by"
             f" {estimate.scale:.2f}, {how}"
         )
-        if self._whole is None:
-            off, scale = 0.0, estimate.scale
+        if self._wholes is None:
+            scale = estimate.scale
             method = f"{recovery}; K = finest mesh less the scaled estimate"
         else:
-            off = self._whole.solved.stiffness.width_Nm_per_rad / 2
             scale = 1 - found.K / self.solved.K_energy
             scale /= energy_error(
                 self.solved.mesh, self.solved.displacement, self._material
@@ -234,8 +240,8 @@ class _SolidTorsion:
             method = f"{OF_THE_HOLES} {recovery}"
         return Stiffness(
             K_Nm_per_rad=found.K,
-            lower_Nm_per_rad=found.lower - off,
-            upper_Nm_per_rad=found.upper + off,
+            lower_Nm_per_rad=found.lower - self._doubt,
+            upper_Nm_per_rad=found.upper + self._doubt,
             guaranteed=False,  # the lower end is an estimate
             model="solid",
             symmetry=symmetry,

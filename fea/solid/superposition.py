@@ -24,6 +24,7 @@ from skfem import ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
+from flexspline.fea.axisymmetric.bisection import Box
 from flexspline.fea.axisymmetric.lobes import SolvedLobes, lobe_harmonic
 from flexspline.fea.axisymmetric.places import Places
 from flexspline.fea.axisymmetric.recovery import (
@@ -136,18 +137,29 @@ class WholeTurned:
     """A part with bolt holes, and its torsion solved without them.
 
     The holes' material touches the held face and not the driven one: E is then the work of the walls.
+    `coarser` : solved on longer edges at the holes, which tells how far off u₀ is.
     """
 
     part: Part
     solved: SolvedTorsion
+    coarser: SolvedTorsion
 
 
 @dataclass(frozen=True)
 class WholeUnderLobes:
-    """A part with bolt holes, and what the lobe load does to it without them."""
+    """A part with bolt holes, and what the lobe load does to it without them; `coarser` as above."""
 
     part: Part
     solved: SolvedLobes
+    coarser: SolvedLobes
+
+
+def at_holes(part: Part) -> tuple[Box, float]:
+    """Where in the meridian the holes of a part are, and the length of the first edges there [mm]."""
+    bolts = part.bolts
+    if bolts is None:
+        raise ValueError("the part has no bolt holes")
+    return Box((bolts.inner, bolts.outer), (0.0, part.hole_depth)), 2 * bolts.hole_radius
 
 
 @dataclass(frozen=True)
@@ -161,14 +173,16 @@ class TurnedWalls:
     energy: float
 
 
-def turned_walls(mesh: TetMesh, whole: WholeTurned, material: Elastic) -> TurnedWalls:
+def turned_walls(
+    mesh: TetMesh, part: Part, solved: SolvedTorsion, material: Elastic
+) -> TurnedWalls:
     """Of a mesh of the part's sector.
 
     Raises
     ------
     MeshingError : a wall leaves the meridian.
     """
-    walls, turn = Walls.of(mesh, whole.part), whole.solved.turn
+    walls, turn = Walls.of(mesh, part), solved.turn
     psi = walls.places(turn.space).see(turn.psi)
     shear = material.mu * walls.r.ravel() * psi.grad
     pull = walls.pull({R_THETA: shear[0], THETA_Z: shear[1]})
@@ -190,7 +204,7 @@ class WallWave:
 
 
 def lobed_walls(
-    mesh: TetMesh, repeats: int, whole: WholeUnderLobes, material: Elastic
+    mesh: TetMesh, repeats: int, part: Part, solved: SolvedLobes, material: Elastic
 ) -> Iterator[WallWave]:
     """The waves of the lobe load on a mesh of half a repeat, or of half the part (`repeats` 1).
 
@@ -198,10 +212,10 @@ def lobed_walls(
     ------
     MeshingError : a wall leaves the meridian.
     """
-    walls = Walls.of(mesh, whole.part)
-    places = walls.places(whole.solved.space)
+    walls = Walls.of(mesh, part)
+    places = walls.places(solved.space)
     of_wave: dict[CyclicWave, list[np.ndarray]] = {}
-    for number, amplitude in enumerate(whole.solved.amplitudes):
+    for number, amplitude in enumerate(solved.amplitudes):
         n = 2 * number
         harmonic = lobe_harmonic(n)
         seen = {c: places.see(amplitude[:, c]) for c in harmonic.components}

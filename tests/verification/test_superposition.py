@@ -136,7 +136,7 @@ def test_by_Bettis_theorem_it_is_the_same(case: str) -> None:
     moved = np.einsum("aq,kad,cdkq->ckq", walls.shapes, own.displacement[walls.facets], walls.axes)
     work = float(np.sum(pull * moved)) * 360 / mesh.sector_deg / NMM_PER_NM
     by_betti = whole.solved.stiffness.K_Nm_per_rad + work
-    K, error = superposed(case, 1.0)
+    K, _ = superposed(case, 1.0)
     best = superposed(case, FINER)
     limit = best[0] - 2 * HOLES_ERROR_SCALE * best[1]
     # K₀ and u₀ are off by WIDTH themselves
