@@ -67,9 +67,9 @@ CONFIRMING_ELEMENTS = 25_000
 flanges with one to three holes had 39 303 and 62 940, for 7 and 11 s, known to ± 0.06 and 0.24 %."""
 ENCLOSED_SECONDS, FIRST_SECONDS, COARSER_FIRST = 10.0, 30.0, 4.0
 """Of fTetWild for a first mesh: where bodies of revolution give K within the tolerance and the mesh gives the
-fields only, or need only tell what holes change, and elsewhere; and how many times as long the edges are
-after that. A tall cup with one large hole took 284 s and 106 000 elements, another 100 s and 35 000 with the
-longer edges: where K alone is asked for, there are none."""
+fields only, and elsewhere; and how many times as long the edges are after that. A tall cup with one large
+hole took 284 s and 106 000 elements, another 100 s and 35 000 with the longer edges: where K alone is asked
+for, there are none."""
 SECOND_SECONDS = 40.0
 """For the mesh with longer edges, where bodies of revolution give K, if not within the tolerance: a command
 takes 90 s at most. A cup of two holes, 0.5 mm of land beside them and a fillet of 0.01 mm took 155 s where
@@ -144,8 +144,7 @@ def twisted(
     first = meshes.coarsened(FIRST_ELEMENTS)
     again = not model.states_edges and model.mesher != "swept"
     if again:
-        little = tolerance == inf or _holes_alone(model, tolerance)
-        limit_s = ENCLOSED_SECONDS if little else FIRST_SECONDS
+        limit_s = ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS
         first = replace(first, time_limit_s=limit_s)
     slow = MET
     while True:

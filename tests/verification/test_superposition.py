@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import tomllib
 from functools import cache
+from itertools import islice
 from math import sqrt
 from typing import Any
 
@@ -21,7 +22,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.recovery import R_THETA, THETA_Z
-from flexspline.fea.axisymmetric.torsion import solved_torsion
+from flexspline.fea.axisymmetric.torsion import solved_torsions
 from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.load_cases import (
@@ -32,7 +33,7 @@ from flexspline.fea.solid.load_cases import (
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE, USUAL_ERROR_SCALE
 from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.solid.superposition import Walls, WholeTurned, wall_facets
+from flexspline.fea.solid.superposition import Walls, WholeTurned, at_holes, wall_facets
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
 from flexspline.geometry.load import design_from
@@ -68,8 +69,12 @@ def part_of(case: str) -> Part:
 @cache
 def whole_of(case: str) -> WholeTurned:
     part, body = part_of(case), part_of(case).without_holes()
-    solved = solved_torsion(body.meridian, Elastic.of(part.material), body.driven, WIDTH)
-    return WholeTurned(part, solved)
+    box, longest_mm = at_holes(part)
+    solves = solved_torsions(
+        body.meridian, Elastic.of(part.material), body.driven, WIDTH, box, longest_mm
+    )
+    coarser, finer = islice(solves, 2)
+    return WholeTurned(part, finer, coarser)
 
 
 @cache
@@ -143,6 +148,26 @@ def test_by_Bettis_theorem_it_is_the_same(case: str) -> None:
     allowed = sqrt((K - limit) * (own.K_energy - limit)) + 2 * WIDTH * K
     assert by_betti == pytest.approx(K, abs=allowed)
     assert allowed < own.K_energy - K  # less than what it would be off by alone
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_doubt_is_how_far_a_coarser_body_without_holes_moves_it(case: str) -> None:
+    """To first order: what is left out is the square of it."""
+    whole, part = whole_of(case), part_of(case)
+    far = next(
+        solved_torsions(
+            part.without_holes().meridian, Elastic.of(part.material), part.driven, 0.05,
+            at_holes(part)[0], 100.0,
+        )
+    )  # fmt: skip
+    model = Model.of(mesh_of(case, 1.0), Elastic.of(part.material))
+    _, fine = torsion_and_correction(model, part.driven, WholeTurned(part, whole.solved, far))
+    _, coarse = torsion_and_correction(model, part.driven, WholeTurned(part, far, far))
+    assert coarse.doubt == 0
+    moved, of_holes = abs(coarse.lost - fine.lost), fine.lost
+    assert fine.doubt == pytest.approx(moved, abs=10 * moved**2 / of_holes + 1e-9 * of_holes)
+    _, usual = solved(case, 1.0)
+    assert usual.doubt <= fine.doubt
 
 
 @pytest.mark.parametrize("case", CASES)
