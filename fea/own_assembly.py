@@ -1,4 +1,4 @@
-"""What is the program's own between scikit-fem's meshes and the matrix, for time alone.
+"""What is the program's own of what scikit-fem does between meshes, fields and the matrix, for time alone.
 
 Nothing here says anything that scikit-fem does not; tests hold each part to its answers. What each part saves
 stands in docs/decisions.md ("What is the program's own").
@@ -12,10 +12,17 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
+from scipy.spatial import cKDTree
 from skfem import Basis, Mesh, MeshTet, MeshTet2, MeshTri, MeshTri2
 from skfem.mapping import MappingIsoparametric
 
 LARGEST = np.iinfo(np.int64).max
+NEAREST = (8, 64)
+"""Triangles by their centres that a point is looked for in, before all of them."""
+CANDIDATES = 1_000_000
+"""Pairs of point and triangle at once: 100 MB."""
+TOUCH = 1e-9
+"""How far, in shares of its height, a point may lie beyond its triangle's side: rounding."""
 
 
 class _Numbered:
@@ -153,3 +160,31 @@ class NodePairs:
         found = np.empty(len(self.number), int)
         found[self.place] = self.place.swapaxes(0, 1)
         return found
+
+
+def triangles_of(mesh: Any, points: np.ndarray) -> np.ndarray:
+    """Which triangle of scikit-fem's mesh each point (2, k) is in, (k,); −1: none.
+
+    Its own finder looks at all triangles for all points where five are not enough for one of them: 2.6 s for
+    9 000 points in 9 000 triangles, 0.1 s here.
+    """
+    corner = mesh.p[:, mesh.t]
+    tree = cKDTree(corner.mean(axis=1).T)
+    found, left = np.full(points.shape[1], -1), np.arange(points.shape[1])
+    for count in (*NEAREST, mesh.nelements):
+        for mine in np.array_split(left, 1 + len(left) * count // CANDIDATES):
+            _, near = tree.query(points[:, mine].T, min(count, mesh.nelements))
+            near = near.reshape(len(mine), -1)
+            first, second = (corner[:, i, near] - corner[:, 0, near] for i in (1, 2))
+            off = points[:, mine, None] - corner[:, 0, near]
+            area = first[0] * second[1] - first[1] * second[0]
+            x = (off[0] * second[1] - off[1] * second[0]) / area
+            y = (first[0] * off[1] - first[1] * off[0]) / area
+            inside = np.minimum(np.minimum(x, y), 1 - x - y)
+            best = inside.argmax(axis=1)[:, None]
+            within = np.take_along_axis(inside, best, 1)[:, 0] > -TOUCH
+            found[mine[within]] = np.take_along_axis(near, best, 1)[within, 0]
+        left = np.flatnonzero(found < 0)
+        if not len(left):
+            break
+    return found

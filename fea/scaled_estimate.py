@@ -26,6 +26,11 @@ class EstimatedBounds(NamedTuple):
     lower: float
     upper: float
 
+    @property
+    def half(self) -> float:
+        """Half of their distance over K."""
+        return (self.upper - self.lower) / (2 * self.K)
+
 
 @dataclass
 class ScaledEstimate:
@@ -46,12 +51,21 @@ class ScaledEstimate:
     """Relative, of each mesh's own K."""
     found: list[float] = field(default_factory=list)
     """K by each mesh [N·m/rad]: its own, or a better one that is above K too."""
+    doubt: float = 0.0
+    """Relative, to both sides, of the last of these K: what no finer mesh takes away."""
 
-    def add(self, level: MeshLevel, relative: float, K_Nm_per_rad: float | None = None) -> None:
+    def add(
+        self,
+        level: MeshLevel,
+        relative: float,
+        K_Nm_per_rad: float | None = None,
+        doubt: float = 0.0,
+    ) -> None:
         """One more mesh; `relative`, the estimate, is of `K_Nm_per_rad` where the mesh's own is not used."""
         self.levels.append(level)
         self.estimates.append(relative)
         self.found.append(level.K_Nm_per_rad if K_Nm_per_rad is None else K_Nm_per_rad)
+        self.doubt = doubt
 
     @property
     def K_Nm_per_rad(self) -> float:
@@ -86,13 +100,14 @@ class ScaledEstimate:
 
     def at_given_angle(self) -> EstimatedBounds:
         """Of a K that is proportional to the energy: a mesh stores too much of it."""
-        K, error = self.K_Nm_per_rad, self.relative
-        return EstimatedBounds(K * (1 - error), K * (1 - 2 * error), K)
+        K, error, doubt = self.K_Nm_per_rad, self.relative, self.doubt
+        return EstimatedBounds(K * (1 - error), K * (1 - 2 * error - doubt), K * (1 + doubt))
 
     def at_given_torque(self, missing: float = 0.0) -> EstimatedBounds:
         """Of a 1/K that is proportional to the energy: a mesh stores too little of it.
 
         `missing` bounds, relative, what it lacks besides, such as load that is left out.
         """
-        K, error = self.K_Nm_per_rad, self.relative
-        return EstimatedBounds(K / (1 + error + missing / 2), K / (1 + 2 * error + missing), K)
+        K, error, doubt = self.K_Nm_per_rad, self.relative, self.doubt
+        lower = K / (1 + 2 * error + missing + doubt)
+        return EstimatedBounds(K / (1 + error + missing / 2), lower, K / (1 - doubt))

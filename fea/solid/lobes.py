@@ -117,12 +117,11 @@ def lobe_stiffness(
     found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate, wholes)
     shortfall = refine(found, mesh, Deadline(limit_s))
     bounds = estimate.at_given_torque()
-    off = found.doubt * bounds.K
     of = f"{OF_THE_HOLES} " if wholes else ""
     return Stiffness(
         K_Nm_per_rad=bounds.K,
-        lower_Nm_per_rad=bounds.lower - off,
-        upper_Nm_per_rad=bounds.upper + off,
+        lower_Nm_per_rad=bounds.lower,
+        upper_Nm_per_rad=bounds.upper,
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,
@@ -149,8 +148,6 @@ class _SolidLobes:
     estimate: ScaledEstimate
     wholes: Iterator[WholeUnderLobes] | None
     whole: WholeUnderLobes | None = None
-    doubt: float = 0.0
-    """Of K, relative, by the part without its holes."""
 
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
@@ -176,14 +173,14 @@ class _SolidLobes:
         K = TORQUE**2 / work / NMM_PER_NM
         estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
         level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
-        self.estimate.add(level, float(estimate))
-        self.doubt = known.half_width + found.doubt / work
+        doubt = known.half_width + found.doubt / work
+        self.estimate.add(level, float(estimate), doubt=doubt)
         return found.mesh.elements
 
     @property
     def half(self) -> float:
         """Half the bounds' distance over K."""
-        return self.estimate.relative + self.doubt
+        return self.estimate.at_given_torque().half
 
     @property
     def met(self) -> bool:

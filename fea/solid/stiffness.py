@@ -151,12 +151,13 @@ class _SolidTorsion:
         self._material, self._driven = material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
-        self._wholes, self._doubt = wholes, 0.0
+        self._wholes = wholes
         self._whole: WholeTurned | None = None
-        if wholes is None:
-            self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
-        else:
-            self.estimate = ScaledEstimate(HOLES_ERROR_SCALE, HOLES_ERROR_SCALES)
+        self.estimate = (
+            ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
+            if wholes is None
+            else ScaledEstimate(HOLES_ERROR_SCALE, HOLES_ERROR_SCALES)
+        )
         self.meshes: list[TetMesh] = []
 
     def mesh(self, spec: MeshSpec) -> TetMesh:
@@ -192,15 +193,13 @@ class _SolidTorsion:
         K = whole.solved.stiffness.K_Nm_per_rad - correction.lost / NMM_PER_NM
         estimate = error.error.sum() * model.copies / NMM_PER_NM
         self.solved, self._errors = solved, error.error
-        own = whole.solved.stiffness.width_Nm_per_rad / 2
-        self._doubt = own + correction.doubt / NMM_PER_NM
-        self.estimate.add(level_of(solved), float(estimate / K), K)
+        doubt = whole.solved.stiffness.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
+        self.estimate.add(level_of(solved), float(estimate / K), K, doubt / K)
 
     @property
     def half(self) -> float:
         """Half the bounds' distance over the K that is reported."""
-        share = self.estimate.relative
-        return (share + self._doubt / self.estimate.K_Nm_per_rad) / (1 - share)
+        return self.estimate.at_given_angle().half
 
     @property
     def met(self) -> bool:
@@ -221,7 +220,7 @@ class _SolidTorsion:
         return self.mesh(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
     def answer(self, symmetry: str, shortfall: Shortfall) -> Stiffness:
-        """The stiffness, estimated: at its lower end."""
+        """The stiffness; its lower end is an estimate."""
         estimate, meshes = self.estimate, len(self.meshes)
         found = estimate.at_given_angle()
         how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"
@@ -240,8 +239,8 @@ class _SolidTorsion:
             method = f"{OF_THE_HOLES} {recovery}"
         return Stiffness(
             K_Nm_per_rad=found.K,
-            lower_Nm_per_rad=found.lower - self._doubt,
-            upper_Nm_per_rad=found.upper + self._doubt,
+            lower_Nm_per_rad=found.lower,
+            upper_Nm_per_rad=found.upper,
             guaranteed=False,  # the lower end is an estimate
             model="solid",
             symmetry=symmetry,

@@ -17,6 +17,7 @@ from flexspline.fea.own_assembly import (
     ScalarBasis,
     Tetrahedra,
     Triangles,
+    triangles_of,
 )
 from flexspline.fea.solid.elements import tet_rule
 from flexspline.fea.solid.space import SolidSpace
@@ -110,3 +111,14 @@ def test_sums_are_those_of_an_assembled_form(basis: Any) -> None:
         full = np.zeros((basis.N, basis.N))
         full[np.divmod(pairs.number, basis.N)] = found
         np.testing.assert_allclose(full, known.toarray(), atol=1e-14)
+
+
+def test_a_point_is_found_in_the_triangle_that_scikit_fem_finds() -> None:
+    """And in none where scikit-fem raises an error: the L has no corner at (1, 1)."""
+    mesh = MeshTri.init_lshaped().refined(3)
+    points = np.random.default_rng(3).uniform(-1, 1, (2, 300))
+    inside = ~(points > 0).all(axis=0)
+    found = triangles_of(mesh, points)
+    assert np.array_equal(found[inside], mesh.element_finder()(*points[:, inside]))
+    assert (found[~inside] == -1).all()
+    assert (~inside).any()

@@ -141,6 +141,26 @@ def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected:
     assert found.scale == expected
 
 
+def test_what_no_mesh_takes_away_is_added_to_both_ends() -> None:
+    """Of the last mesh: K₀ and its field are solved better for each."""
+    found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
+    found.add(level(100.0), 0.01, 90.0, doubt=0.5)
+    found.add(level(100.0), 0.01, 90.0, doubt=0.02)
+    none = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
+    for _ in range(2):
+        none.add(level(90.0), 0.01)
+    assert found.K_Nm_per_rad == 90.0
+    with_it, without = found.at_given_angle(), none.at_given_angle()
+    assert with_it.K == without.K
+    assert without.lower - with_it.lower == pytest.approx(0.02 * 90.0)
+    assert with_it.upper - without.upper == pytest.approx(0.02 * 90.0)
+    assert with_it.half == pytest.approx((with_it.upper - with_it.lower) / 2 / with_it.K)
+    with_it, without = found.at_given_torque(), none.at_given_torque()
+    assert with_it.K == without.K
+    assert 1 / with_it.lower - 1 / without.lower == pytest.approx(0.02 / 90.0)
+    assert 1 / without.upper - 1 / with_it.upper == pytest.approx(0.02 / 90.0)
+
+
 @pytest.mark.parametrize("q", [0.5, 0.7, 0.85])
 def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: float) -> None:
     """K falls by q each time and the estimate hardly at all, as on a shaft whose sharp edges took every
