@@ -1,0 +1,90 @@
+"""Where meshes need only tell what bolt holes change, and what happens where that fails."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from example_files import EXAMPLES
+
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.solid import stiffness
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import solid_torsion
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.lobes_with_holes import lobes_with_holes
+from flexspline.pipeline.parts import AnalysisContext, PartModel
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.solid_lobes import solid_lobes
+
+CUP = load_design(EXAMPLES / "xb1-40.toml").changed({"solver.tolerance_pct": 1.0})
+KEYED = load_design(EXAMPLES / "keyed-shaft.toml")
+WIDE = CUP.changed(
+    {"flexspline.bolt_hole_diameter_mm": 4.4, "flexspline.diaphragm_thickness_mm": 1.5}
+)
+"""Large holes that leave 0.3 mm of the boss beside them: the two bodies are 5 % apart."""
+ALONE = "superposition"
+
+
+def shaft(folder: Path, design: Design = CUP) -> PartModel:
+    return AnalysisContext(design, Cache(folder), Progress()).part("shaft")
+
+
+def of_all_the_field(folder: Path) -> stiffness.Stiffness:
+    design = CUP.changed({"solver.model": "solid"})
+    return solid_torsion.twisted(shaft(folder, design), 0.01).stiffness
+
+
+def test_a_shaft_with_holes_is_known_better_by_the_same_mesh(suite_cache: Path) -> None:
+    found = solid_torsion.twisted(shaft(suite_cache), 0.01).stiffness
+    whole = of_all_the_field(suite_cache)
+    assert ALONE in found.method
+    assert ALONE not in whole.method
+    assert found.levels[0].K_Nm_per_rad == pytest.approx(whole.levels[0].K_Nm_per_rad, rel=1e-6)
+    assert found.half_width < whole.half_width / 3
+    assert whole.lower_Nm_per_rad < found.lower_Nm_per_rad
+    assert found.upper_Nm_per_rad < whole.upper_Nm_per_rad
+    # true over estimated error of the mesh's own K, for the stress and the lobes that are solved on it
+    assert 1 < found.error_scale < 3.1
+
+
+def test_a_keyway_is_solved_with_all_of_the_field(tmp_path: Path) -> None:
+    found = solid_torsion.twisted(shaft(tmp_path, KEYED), 0.05).stiffness
+    assert ALONE not in found.method
+
+
+@pytest.mark.parametrize("fault", ["wall", "contradiction", "little"])
+def test_where_it_fails_all_of_the_field_is_solved(
+    fault: str, tmp_path: Path, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve = stiffness.torsion_and_correction
+
+    def fails(*given: Any) -> Any:
+        solved, correction = solve(*given)
+        if fault == "wall":
+            raise MeshingError("a place is not on the meridian")
+        share = -0.5 if fault == "contradiction" else 0.95  # of K without holes, in N·mm
+        return solved, replace(correction, lost=share * 1000 * solved.K_energy)
+
+    monkeypatch.setattr(stiffness, "torsion_and_correction", fails)
+    found = solid_torsion.twisted(shaft(tmp_path), 0.01).stiffness
+    monkeypatch.undo()
+    assert ALONE not in found.method
+    whole = of_all_the_field(suite_cache)
+    assert found.bounds_Nm_per_rad == pytest.approx(whole.bounds_Nm_per_rad, rel=1e-6)
+
+
+@pytest.mark.parametrize("supported", [True, False])
+def test_under_the_lobes_it_lies_within_what_all_of_the_field_says(
+    supported: bool, suite_cache: Path
+) -> None:
+    part = AnalysisContext(WIDE, Cache(suite_cache), Progress()).part("flexspline")
+    found, whole = lobes_with_holes(part, supported), solid_lobes(part, supported)
+    assert ALONE in found.method
+    assert not found.guaranteed
+    assert found.half_width < 0.01
+    assert found.half_width < whole.half_width / 3
+    assert whole.lower_Nm_per_rad < found.K_Nm_per_rad < whole.upper_Nm_per_rad
