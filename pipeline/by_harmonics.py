@@ -9,6 +9,8 @@ from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.refining import Refining
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 
 T = TypeVar("T", Stiffness, StressPeak, tuple[StressPeak, float])
 
@@ -29,6 +31,17 @@ def by_harmonics(
 
     inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
     return context.cache.get("harmonics", inputs, timed, _is_lasting)[0]
+
+
+def rim_by_harmonics(flexspline: PartModel, case: RimCase, solve: RimSolve) -> Stiffness:
+    """K_b of a body of revolution in a load case that `solve` answers; errors as of that."""
+    own, width = flexspline.material, flexspline.tolerance
+    return by_harmonics(
+        flexspline,
+        figure_of(case),
+        RIM_CASES[case].title,
+        lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
+    )
 
 
 def _is_lasting(found: Stiffness | StressPeak | tuple[StressPeak, float]) -> bool:

@@ -8,6 +8,7 @@ from math import inf
 
 from flexspline.fea.types import MET, Shortfall, Stiffness
 from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.part import Part
 from flexspline.pipeline.enclosure import TwoBodies, two_bodies
 from flexspline.pipeline.parts import PartModel
 
@@ -74,13 +75,26 @@ def by_two_bodies(
     return found
 
 
+def without_holes(model: PartModel, solve: PartSolver) -> Stiffness:
+    """K of the part without its holes, as finely as the enclosure has it; errors as of `solve`."""
+    share = BODY_SHARE * model.context.design.solver.tolerance_pct
+    return _body_to(model, solve, share)(model.part.without_holes())
+
+
 def _bodies_to(model: PartModel, solve: PartSolver, tolerance_pct: float) -> TwoBodies:
     """`two_bodies`, each solved to its own tolerance."""
+    return two_bodies(model.part, _body_to(model, solve, tolerance_pct))
+
+
+def _body_to(
+    model: PartModel, solve: PartSolver, tolerance_pct: float
+) -> Callable[[Part], Stiffness]:
+    """What solves a body in place of the part, to a tolerance of its own."""
     design = model.context.design
     asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
     solver = design.solver.model_copy(update=asked)
     context = replace(model.context, design=design.model_copy(update={"solver": solver}))
-    return two_bodies(model.part, lambda body: solve(replace(model, context=context, part=body)))
+    return lambda body: solve(replace(model, context=context, part=body))
 
 
 def enclosure_if_any(

@@ -14,7 +14,7 @@ from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
-from flexspline.pipeline.by_harmonics import by_harmonics
+from flexspline.pipeline.by_harmonics import by_harmonics, rim_by_harmonics
 from flexspline.pipeline.enclosed_part import (
     FIRST_BOUNDS_PCT,
     PartSolver,
@@ -23,6 +23,7 @@ from flexspline.pipeline.enclosed_part import (
     enclosure_of,
     has_enclosure,
     may_answer,
+    without_holes,
 )
 from flexspline.pipeline.enclosure import TwoBodies, answered_within, check_against
 from flexspline.pipeline.lift_off_with_holes import resting_with_holes
@@ -34,7 +35,6 @@ from flexspline.pipeline.part_stiffness import (
     torsion_enclosure,
 )
 from flexspline.pipeline.parts import PartModel
-from flexspline.pipeline.refining import Refining
 from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
@@ -111,7 +111,7 @@ def _of_holed(
 
 def _by_torsion(flexspline: PartModel, K_b: Stiffness, revolved: PartSolver) -> Stiffness:
     """K_b under the lobes from that in torsion and the two bodies of revolution."""
-    whole = by_two_bodies(flexspline, revolved_stiffness, lambda bodies: bodies.whole, expected=0.0)
+    whole = without_holes(flexspline, revolved_stiffness)
     f, tolerance = flexspline.context.design.flexspline, flexspline.tolerance
     entry = entry_doubt(f)
 
@@ -135,14 +135,7 @@ def by_itself(
 ) -> RimModels:
     """A case that `solve` answers on a meridian without another case's answer."""
 
-    def of_part(flexspline: PartModel) -> Stiffness:
-        own, width = flexspline.material, flexspline.tolerance
-        return by_harmonics(
-            flexspline,
-            figure_of(case),
-            RIM_CASES[case].title,
-            lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
-        )
+    of_part = partial(rim_by_harmonics, case=case, solve=solve)
 
     def enclosure(flexspline: PartModel) -> Stiffness:
         return enclosure_of(flexspline, of_part, _expected(flexspline))

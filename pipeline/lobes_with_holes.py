@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -14,19 +15,24 @@ from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE
 from flexspline.fea.solid.superposition import WholeUnderLobes, at_holes
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
+from flexspline.pipeline.by_harmonics import rim_by_harmonics
+from flexspline.pipeline.enclosed_part import without_holes
 from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.rim_case import RimCase, free_rim, held_rim
 from flexspline.pipeline.solid_lobes import MOST_LOBE_ELEMENTS
 from flexspline.pipeline.solid_torsion import (
     RIM_ELEMENTS,
     SOLID_SECONDS,
-    WHOLE_SHARE,
     copies_in_rim,
 )
 
 FINER_EDGES = (0.6, 0.36)
 """Edges of the second and third mesh over those of the first."""
+FIELD_WIDTH = 4.0
+"""Of the tolerance, for the bounds of K by the harmonics whose stress is taken off the walls: how far off these
+are there is told by itself (`SolvedCorrection.doubt`)."""
 
 
 def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
@@ -56,15 +62,18 @@ def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
 
 
 def _wholes(flexspline: PartModel, supported: bool) -> Iterator[WholeUnderLobes]:
-    """The part without its holes, better and better."""
+    """The part without its holes: K as the enclosure has it, its fields better and better."""
     part = flexspline.part
+    case: RimCase = "lobes" if supported else "lobes_unsupported"
+    solve = held_rim if supported else free_rim
+    K = without_holes(flexspline, partial(rim_by_harmonics, case=case, solve=solve))
     box, longest_mm = at_holes(part)
     each = solved_lobes(
         part.without_holes().meridian, flexspline.material, supported,
-        WHOLE_SHARE * flexspline.tolerance, box, longest_mm, Deadline(STAGE_SECONDS),
+        FIELD_WIDTH * flexspline.tolerance, box, longest_mm, Deadline(STAGE_SECONDS),
     )  # fmt: skip
     for coarser, finer in pairwise(each):
-        yield WholeUnderLobes(part, finer, coarser)
+        yield WholeUnderLobes(part, K, finer, coarser)
 
 
 def _meshes(flexspline: PartModel) -> Iterator[tuple[TetMesh, float]]:

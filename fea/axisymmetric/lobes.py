@@ -107,12 +107,11 @@ def lobe_harmonic(n: int) -> Harmonic:
 
 @dataclass(frozen=True)
 class SolvedLobes:
-    """A stiffness under the lobe load, and the harmonics n = 0, 2, 4, … of the finest mesh for TORQUE.
+    """The harmonics n = 0, 2, 4, … of the lobe load, TORQUE, on the finest mesh.
 
     u_r = −U sin nφ, u_θ = V cos nφ, u_z = −W sin nφ of `amplitudes`, (count, 3) each [mm].
     """
 
-    stiffness: Stiffness
     space: Space
     amplitudes: tuple[np.ndarray, ...]
 
@@ -126,7 +125,7 @@ def solved_lobes(
     longest_mm: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedLobes]:
-    """The last of `lobe_stiffnesses` with its fields, on meshes finer and finer in a box.
+    """The fields of the last of `lobe_stiffnesses`, on meshes finer and finer in a box.
 
     As of `torsion.solved_torsions`.
 
@@ -139,8 +138,8 @@ def solved_lobes(
         mesh = refined_within(mesh, box, longest_mm)
         if number > 1 and mesh.elements > MOST_TRIANGLES_WITHIN:
             return
-        shortfall = refine(lobes, mesh, deadline, MOST_TRIANGLES)
-        yield SolvedLobes(lobes.stiffness(shortfall), lobes.space, lobes.found.amplitudes)
+        refine(lobes, mesh, deadline, MOST_TRIANGLES)
+        yield SolvedLobes(lobes.space, lobes.found.amplitudes)
         mesh, longest_mm = lobes.mesh, longest_mm / 2
 
 

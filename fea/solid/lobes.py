@@ -167,7 +167,7 @@ class _SolidLobes:
     def _solve_holes(self, model: Model, wholes: Iterator[WholeUnderLobes]) -> int:
         self.whole = whole = next(wholes, self.whole)
         assert whole is not None
-        found, known = lobe_correction(model, self.supported, whole), whole.solved.stiffness
+        found, known = lobe_correction(model, self.supported, whole), whole.stiffness
         error = energy_error(found.mesh, found.displacement, self.material)
         work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM) + found.lost
         K = TORQUE**2 / work / NMM_PER_NM

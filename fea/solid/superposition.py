@@ -40,7 +40,7 @@ from flexspline.fea.axisymmetric.recovery import (
 from flexspline.fea.axisymmetric.torsion import SolvedTorsion
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.solid.waves import CyclicWave, waves
-from flexspline.fea.types import Elastic, TetMesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface, Swept, part_surfaces
 
@@ -147,9 +147,13 @@ class WholeTurned:
 
 @dataclass(frozen=True)
 class WholeUnderLobes:
-    """A part with bolt holes, and what the lobe load does to it without them; `coarser` as above."""
+    """A part with bolt holes, and what the lobe load does to it without them; `coarser` as above.
+
+    `stiffness` : K₀ under that load.
+    """
 
     part: Part
+    stiffness: Stiffness
     solved: SolvedLobes
     coarser: SolvedLobes
 
