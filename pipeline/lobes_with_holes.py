@@ -31,8 +31,8 @@ from flexspline.pipeline.solid_torsion import (
 FINER_EDGES = (0.6, 0.36)
 """Edges of the second and third mesh over those of the first."""
 FIELD_WIDTH = 4.0
-"""Of the tolerance, for the bounds of K by the harmonics whose stress is taken off the walls: how far off these
-are there is told by itself (`SolvedCorrection.doubt`)."""
+"""Of the tolerance, for the bounds of K by the harmonics whose stress is taken off the walls: how far off
+these are there is told by itself (`SolvedCorrection.doubt`)."""
 
 
 def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
