@@ -21,6 +21,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
@@ -195,7 +196,7 @@ class _SolidTorsion:
             if self._added(torsion_and_correction(model, self._driven, whole), whole):
                 return True
             self._progress("what the holes change says too little of K")
-        except MeshingError as fault:
+        except (MeshingError, MeshQualityError) as fault:
             self._progress(str(fault))
         self._wholes = None
         self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)

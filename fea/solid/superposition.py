@@ -39,6 +39,7 @@ from flexspline.fea.axisymmetric.recovery import (
 )
 from flexspline.fea.axisymmetric.torsion import SolvedTorsion
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.part import Part
@@ -71,8 +72,15 @@ class Walls:
 
     @classmethod
     def of(cls, mesh: TetMesh, part: Part) -> Walls:
-        """Of a mesh of a part's sector."""
+        """Of a mesh of a part's sector.
+
+        Raises
+        ------
+        MeshQualityError : it has none.
+        """
         facets = wall_facets(mesh, part_surfaces(part, mesh.sector_deg))
+        if not len(facets):
+            raise MeshQualityError("no facet of the mesh lies on a wall of the holes")
         points, weights = get_quadrature(RefTri, WALL_DEGREE)
         element = ElementTriP2()
         each = [element.lbasis(points, i) for i in range(6)]
@@ -184,7 +192,7 @@ def turned_walls(
 
     Raises
     ------
-    MeshingError : a wall leaves the meridian.
+    MeshingError : a wall leaves the meridian. MeshQualityError : the mesh has no walls.
     """
     walls, turn = Walls.of(mesh, part), solved.turn
     psi = walls.places(turn.space).see(turn.psi)
@@ -214,7 +222,7 @@ def lobed_walls(
 
     Raises
     ------
-    MeshingError : a wall leaves the meridian.
+    MeshingError : a wall leaves the meridian. MeshQualityError : the mesh has no walls.
     """
     walls = Walls.of(mesh, part)
     places = walls.places(solved.space)

@@ -10,6 +10,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid import stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
@@ -56,7 +57,7 @@ def test_a_keyway_is_solved_with_all_of_the_field(tmp_path: Path) -> None:
     assert ALONE not in found.method
 
 
-@pytest.mark.parametrize("fault", ["wall", "contradiction", "little"])
+@pytest.mark.parametrize("fault", ["wall", "none", "contradiction", "little"])
 def test_where_it_fails_all_of_the_field_is_solved(
     fault: str, tmp_path: Path, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -66,6 +67,8 @@ def test_where_it_fails_all_of_the_field_is_solved(
         solved, correction = solve(*given)
         if fault == "wall":
             raise MeshingError("a place is not on the meridian")
+        if fault == "none":
+            raise MeshQualityError("no walls")
         share = -0.5 if fault == "contradiction" else 0.95  # of K without holes, in N·mm
         return solved, replace(correction, lost=share * 1000 * solved.K_energy)
 
@@ -86,5 +89,7 @@ def test_under_the_lobes_it_lies_within_what_all_of_the_field_says(
     assert ALONE in found.method
     assert not found.guaranteed
     assert found.half_width < 0.01
-    assert found.half_width < whole.half_width / 3
+    assert (
+        found.half_width < whole.half_width / 2
+    )  # most is K without holes, to 0.3 of the tolerance
     assert whole.lower_Nm_per_rad < found.K_Nm_per_rad < whole.upper_Nm_per_rad

@@ -24,6 +24,7 @@ from example_files import EXAMPLES
 from flexspline.fea.axisymmetric.recovery import R_THETA, THETA_Z
 from flexspline.fea.axisymmetric.torsion import solved_torsions
 from flexspline.fea.cylindrical import TANGENTIAL
+from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.load_cases import (
     SolvedCorrection,
@@ -192,3 +193,13 @@ def test_the_walls_are_those_of_the_holes(case: str) -> None:
     assert len(facets) == len(walls.facets)
     assert not np.isin(facets, mesh.on("mount")).all(axis=1).any()
     assert np.abs(walls.area[TANGENTIAL]).max() > 0
+
+
+def test_a_mesh_without_walls_is_refused() -> None:
+    """Of the part without holes: that would make K the whole body's, and nothing would tell."""
+    part = part_of("cup, two large holes")
+    whole = part.without_holes()
+    mesh = swept_mesh(whole, sector_of(part, "torsion").degrees, first_spec(part))
+    assert mesh is not None
+    with pytest.raises(MeshQualityError, match="no facet"):
+        Walls.of(mesh, part)
