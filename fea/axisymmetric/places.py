@@ -6,12 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 from skfem import MappingAffine, MeshTri
 from skfem.element import DiscreteField
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.own_assembly import triangles_of
+
+OUTSIDE = 0.01
+"""A mesher's walls may begin 1e-6 mm outside, a parabola's points 1e-4 of its radius."""
 
 
 @dataclass(frozen=True)
@@ -29,18 +33,22 @@ class Places:
 
     @classmethod
     def of(cls, space: Space, r: np.ndarray, z: np.ndarray) -> Places:
-        """Points at r, z (k,) [mm].
+        """Points at r, z (k,) [mm]; one that is just outside is seen at the nearest number's place.
 
         Raises
         ------
-        MeshingError : one is outside of the mesh.
+        MeshingError : one is farther outside than OUTSIDE of the mesh's size.
         """
         mesh, element = space.basis.mesh, space.basis.elem
         straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
         mapping, points = MappingAffine(straight), np.stack([r, z])
         triangle = triangles_of(straight, points)
-        if outside := int((triangle < 0).sum()):
-            raise MeshingError(f"{outside} of {len(r)} places are not on the meridian")
+        if (outside := triangle < 0).any():
+            away, nearest = cKDTree(space.places).query(points[:, outside].T)
+            if away.max() > OUTSIDE * np.ptp(straight.p, axis=1).max():
+                raise MeshingError(f"{outside.sum()} of {len(r)} places are not on the meridian")
+            points[:, outside] = space.places[nearest].T
+            triangle[outside] = triangles_of(straight, points[:, outside])
         local = mapping.invF(points[:, :, None], tind=triangle)
         shapes = [element.gbasis(mapping, local, i, tind=triangle)[0] for i in range(6)]
         return cls(space.basis.element_dofs[:, triangle], tuple(shapes))

@@ -248,13 +248,8 @@ class _SolidTorsion:
             f" {estimate.scale:.2f}, {how}"
         )
         if self._wholes is None:
-            scale = estimate.scale
             method = f"{recovery}; K = finest mesh less the scaled estimate"
         else:
-            scale = 1 - found.K / self.solved.K_energy
-            scale /= energy_error(
-                self.solved.mesh, self.solved.displacement, self._material
-            ).relative
             method = f"{OF_THE_HOLES} {recovery}"
         return Stiffness(
             K_Nm_per_rad=found.K,
@@ -265,7 +260,7 @@ class _SolidTorsion:
             symmetry=symmetry,
             method=method,
             levels=tuple(estimate.levels),
-            error_scale=scale,
+            error_scale=estimate.scale,
             shortfall=shortfall,
         )
 

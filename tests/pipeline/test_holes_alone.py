@@ -48,8 +48,6 @@ def test_a_shaft_with_holes_is_known_better_by_the_same_mesh(suite_cache: Path) 
     assert found.half_width < whole.half_width / 3
     assert whole.lower_Nm_per_rad < found.lower_Nm_per_rad
     assert found.upper_Nm_per_rad < whole.upper_Nm_per_rad
-    # true over estimated error of the mesh's own K, for the stress and the lobes that are solved on it
-    assert 1 < found.error_scale < 3.1
 
 
 def test_a_keyway_is_solved_with_all_of_the_field(tmp_path: Path) -> None:
@@ -84,8 +82,11 @@ def test_where_it_fails_all_of_the_field_is_solved(
 def test_under_the_lobes_it_lies_within_what_all_of_the_field_says(
     supported: bool, suite_cache: Path
 ) -> None:
-    part = AnalysisContext(WIDE, Cache(suite_cache), Progress()).part("flexspline")
-    found, whole = lobes_with_holes(part, supported), solid_lobes(part, supported)
+    part, alone = (
+        AnalysisContext(design, Cache(suite_cache), Progress()).part("flexspline")
+        for design in (WIDE, WIDE.changed({"solver.model": "solid"}))
+    )
+    found, whole = lobes_with_holes(part, supported), solid_lobes(alone, supported)
     assert ALONE in found.method
     assert not found.guaranteed
     assert found.half_width < 0.01

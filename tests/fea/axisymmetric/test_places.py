@@ -48,6 +48,15 @@ def test_a_point_outside_is_an_error(mesh: MeridianMesh) -> None:
         Places.of(space, np.array([inside[0], 500.0]), np.array([inside[1], 0.0]))
 
 
+def test_a_point_just_outside_is_seen_at_the_nearest_place(mesh: MeridianMesh) -> None:
+    """A mesher's nodes are within 1e-6 mm of the surface they are on."""
+    space = straight(mesh, mesh.points, 4, {})
+    z = space.places[:, 1]
+    on_mount = space.places[z == z.min()]
+    seen = Places.of(space, on_mount[:, 0], on_mount[:, 1] - 1e-6).see(space.places[:, 0])
+    assert np.asarray(seen) == pytest.approx(on_mount[:, 0], abs=1e-9)
+
+
 def test_in_the_box_no_edge_is_longer_and_elsewhere_most_stay(mesh: MeridianMesh) -> None:
     first = triangulate(CUP.without_holes().meridian)
     lengths = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
