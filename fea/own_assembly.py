@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.spatial import cKDTree
 from skfem import Basis, Mesh, MeshTet, MeshTet2, MeshTri, MeshTri2
 from skfem.mapping import MappingIsoparametric
 
@@ -168,6 +167,8 @@ def triangles_of(mesh: Any, points: np.ndarray) -> np.ndarray:
     Its own finder looks at all triangles for all points where five are not enough for one of them: 2.6 s for
     9 000 points in 9 000 triangles, 0.1 s here.
     """
+    from scipy.spatial import cKDTree
+
     corner = mesh.p[:, mesh.t]
     tree = cKDTree(corner.mean(axis=1).T)
     found, left = np.full(points.shape[1], -1), np.arange(points.shape[1])

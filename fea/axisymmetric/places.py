@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 from skfem import MappingAffine, MeshTri
 from skfem.element import DiscreteField
 
@@ -39,6 +38,8 @@ class Places:
         ------
         MeshingError : one is farther outside than OUTSIDE of the mesh's size.
         """
+        from scipy.spatial import cKDTree
+
         mesh, element = space.basis.mesh, space.basis.elem
         straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
         mapping, points = MappingAffine(straight), np.stack([r, z])
