@@ -80,8 +80,8 @@ mesh is a cautious one. With 0.7 and 0.95 as many of 49 random shafts met the to
 LEAST_LEFT = 0.1
 """Of K without holes: less is the small difference of two large numbers."""
 OF_THE_HOLES = (
-    "the part without holes as a body of revolution, and what they change by solid meshes (Bueckner's"
-    " superposition); of that,"
+    "the part without holes on its meridian, and what the holes change by solid meshes (Bueckner's"
+    " superposition); of that change,"
 )
 """How K is found so; what says how large the error is follows."""
 
