@@ -9,7 +9,6 @@ from typing import Any
 
 from flexspline.fea.axisymmetric.lobes import solved_lobes
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.lobes import lobe_stiffness
 from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE
 from flexspline.fea.solid.superposition import WholeUnderLobes, at_holes
@@ -17,16 +16,11 @@ from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.by_harmonics import rim_by_harmonics
 from flexspline.pipeline.enclosed_part import without_holes
-from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.rim_case import RimCase, free_rim, held_rim
-from flexspline.pipeline.solid_lobes import MOST_LOBE_ELEMENTS
-from flexspline.pipeline.solid_torsion import (
-    RIM_ELEMENTS,
-    SOLID_SECONDS,
-    copies_in_rim,
-)
+from flexspline.pipeline.solid_lobes import first_rim_spec, swept_rim
+from flexspline.pipeline.solid_torsion import SOLID_SECONDS
 
 FINER_EDGES = (0.6, 0.36)
 """Edges of the second and third mesh over those of the first."""
@@ -86,16 +80,6 @@ def _meshes(flexspline: PartModel) -> Iterator[tuple[TetMesh, float]]:
     yield rim_mesh(flexspline).mesh, HOLES_ERROR_SCALE
     if not flexspline.is_swept:
         return
-    meshes, most = PartMeshes(flexspline), MOST_LOBE_ELEMENTS / copies_in_rim(flexspline)
-    first = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+    first = first_rim_spec(flexspline)
     for edges in FINER_EDGES:
-        try:
-            swept = meshes.swept(first.scaled(edges), most_elements=most)
-        except TooManyElementsError as fault:
-            elements = fault.elements * copies_in_rim(flexspline)
-            raise SolidError(
-                f"it would have {elements:.0f} elements, at most {MOST_LOBE_ELEMENTS}"
-            ) from None
-        if swept is None:
-            raise SolidError("the swept mesh fails a check")
-        yield swept.mesh, HOLES_ERROR_SCALE
+        yield swept_rim(flexspline, first.scaled(edges)), HOLES_ERROR_SCALE

@@ -7,7 +7,9 @@ from typing import Any
 
 from flexspline.fea.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
+from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import USUAL_ERROR_SCALE
+from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
@@ -23,8 +25,6 @@ MESHES = 3
 USUAL_OVER_TORSION = 1.8
 """Relative bounds of K of a held rim over those of torsion on the same mesh: 0.9, 1.6, 1.8, 2.1, 3.1 on five
 random cups and hats."""
-USUAL_OF_FREE = 0.035
-"""Those of a free rim on torsion's mesh, whatever torsion's are: ± 1.5, 3.5 and 4.1 % on three of them."""
 COARSE_SCALE = 3.1
 """True over estimated error of a free rim on steps of 10°: 2.1 to 4.4 on four parts; the bounds hold up to
 twice this."""
@@ -98,12 +98,25 @@ def _of_torsion(flexspline: PartModel, supported: bool) -> tuple[TetMesh, float]
 def _numbered_mesh(flexspline: PartModel, number: int) -> TetMesh:
     f, material = flexspline.context.design.flexspline, flexspline.material
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, material, flexspline.tolerance, number)
-    meshes, spec = PartMeshes(flexspline), flexspline.first_spec
-    if number == 0:
-        spec = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+    spec = first_rim_spec(flexspline) if number == 0 else flexspline.first_spec
+    return swept_rim(flexspline, spec, finer)
+
+
+def first_rim_spec(flexspline: PartModel) -> MeshSpec:
+    """Of a first mesh for the rim, of RIM_ELEMENTS at most where it may be coarser."""
+    return PartMeshes(flexspline).coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+
+
+def swept_rim(flexspline: PartModel, spec: MeshSpec, finer: Finer | None = None) -> TetMesh:
+    """Swept, of half a repeat.
+
+    Raises
+    ------
+    SolidError : it would be larger than MOST_LOBE_ELEMENTS, or fails a check.
+    """
     copies = copies_in_rim(flexspline)
     try:
-        swept = meshes.swept(spec, finer, MOST_LOBE_ELEMENTS / copies)
+        swept = PartMeshes(flexspline).swept(spec, finer, MOST_LOBE_ELEMENTS / copies)
     except TooManyElementsError as fault:
         raise SolidError(
             f"it would have {fault.elements * copies:.0f} elements, at most {MOST_LOBE_ELEMENTS}"

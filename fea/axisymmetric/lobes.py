@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import count
 from math import pi, sin
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import Box, refined_twice, refined_within
+from flexspline.fea.axisymmetric.bisection import Box, refined_twice
+from flexspline.fea.axisymmetric.finer_in_box import finer_in_box
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
@@ -26,7 +26,7 @@ from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
-from flexspline.fea.refinement import refine, refinements
+from flexspline.fea.refinement import refinements
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
@@ -134,13 +134,8 @@ def solved_lobes(
     MeshingError, HarmonicError, OutOfTimeError
     """
     lobes, mesh = _RevolvedLobes(material, supported, relative_width), triangulate(outline)
-    for number in count():
-        mesh = refined_within(mesh, box, longest_mm)
-        if number > 1 and mesh.elements > MOST_TRIANGLES_WITHIN:
-            return
-        refine(lobes, mesh, deadline, MOST_TRIANGLES)
+    for _ in finer_in_box(lobes, mesh, box, longest_mm, deadline, MOST_TRIANGLES_WITHIN):
         yield SolvedLobes(lobes.space, lobes.found.amplitudes)
-        mesh, longest_mm = lobes.mesh, longest_mm / 2
 
 
 def lobe_stiffnesses(

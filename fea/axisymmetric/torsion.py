@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import count
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice, refined_within
+from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice
+from flexspline.fea.axisymmetric.finer_in_box import finer_in_box
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
@@ -52,8 +52,8 @@ def torsional_stiffness(
 
     Source: J. H. Michell, Proc. London Math. Soc. 31 (1899) 130-146, for the two fields.
     """
-    boundary, mesh = sorted_boundary(outline, driven), _first_mesh(outline, driven)
-    found = _Bounds(boundary, relative_width, material)
+    boundary = sorted_boundary(outline, driven)
+    found, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
     return found.stiffness(refine(found, mesh, deadline, MOST_TRIANGLES))
 
 
@@ -83,19 +83,14 @@ def solved_torsions(
     ------
     PatchError, MeshingError, OutOfTimeError
     """
-    boundary, mesh = sorted_boundary(outline, driven), _first_mesh(outline, driven)
-    found = _Bounds(boundary, relative_width, material)
-    for number in count():
-        mesh = refined_within(mesh, box, longest_mm)
-        if number > 1 and mesh.elements > MOST_TRIANGLES_WITHIN:
-            return
-        shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
+    boundary = sorted_boundary(outline, driven)
+    found, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
+    for shortfall in finer_in_box(found, mesh, box, longest_mm, deadline, MOST_TRIANGLES_WITHIN):
         yield SolvedTorsion(found.stiffness(shortfall), found.turn)
-        mesh, longest_mm = found.mesh, longest_mm / 2
 
 
-def _first_mesh(outline: Meridian, driven: str) -> MeridianMesh:
-    mesh, boundary = triangulate(outline), sorted_boundary(outline, driven)
+def _first_mesh(outline: Meridian, boundary: Boundary) -> MeridianMesh:
+    mesh = triangulate(outline)
     while (near := across_from_axis(mesh, boundary)).any():
         mesh = refined(mesh, near)
     return mesh

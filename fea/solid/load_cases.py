@@ -16,6 +16,7 @@ from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.solver import Solution
 from flexspline.fea.solid.superposition import (
+    Walls,
     WholeTurned,
     WholeUnderLobes,
     lobed_walls,
@@ -95,11 +96,11 @@ def torsion_and_correction(
 
     Raises
     ------
-    SolveError : as `torsion`. MeshingError : as `turned_walls`.
+    SolveError : as `torsion`. MeshingError, MeshQualityError : as `turned_walls` and `Walls.of`.
     """
+    on = Walls.of(model.mesh, whole.part)
     walls, before = (
-        turned_walls(model.mesh, whole.part, solved, model.material)
-        for solved in (whole.solved, whole.coarser)
+        turned_walls(on, solved, model.material) for solved in (whole.solved, whole.coarser)
     )
     supports = _turned(model, driven)
     own = model.frames.to_cylindrical(walls.forces).ravel()
@@ -167,12 +168,12 @@ def lobe_correction(model: Model, supported: bool, whole: WholeUnderLobes) -> So
 
     Raises
     ------
-    SolveError. MeshingError : as `lobed_walls`.
+    SolveError. MeshingError, MeshQualityError : as `lobed_walls` and `Walls.of`.
     """
     repeats, found, lost, moved = repeats_of(model.mesh), [], 0.0, 0.0
+    on = Walls.of(model.mesh, whole.part)
     both = (
-        lobed_walls(model.mesh, repeats, whole.part, solved, model.material)
-        for solved in (whole.solved, whole.coarser)
+        lobed_walls(on, repeats, solved, model.material) for solved in (whole.solved, whole.coarser)
     )
     for walls, before in zip(*both, strict=False):  # the first waves, where one has more harmonics
         supports = _under_lobes(model, walls.wave, supported)

@@ -41,9 +41,9 @@ LOBE_STEP = 0.37
 elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six
 first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 15 and 11 s of the
 processor."""
-MERIDIAN_SHARE, STEP_SHARE = 0.25, 0.25
-"""Of the tolerance: what the harmonics' estimate of the meridian's error may be, and about what the steps
-take. The usual scale of 2 makes half of the tolerance of the first."""
+MERIDIAN_SHARE = 0.25
+"""Of the tolerance: what the harmonics' estimate of the meridian's error may be. The usual scale of 2 makes
+half of the tolerance of it, and the steps take about a quarter."""
 SOLID_BULK = 0.4
 """Share of that error whose triangles are refined each round: more rounds, fewer triangles too many."""
 TAIL = 1e-3

@@ -103,6 +103,11 @@ class Walls:
             axes,
         )
 
+    @property
+    def copies(self) -> float:
+        """How many sectors make the part."""
+        return 360 / self.mesh.sector_deg
+
     def places(self, space: Any) -> Places:
         """The points in the meridian; raises MeshingError where they leave it."""
         return Places.of(space, self.r.ravel(), self.z.ravel())
@@ -185,21 +190,19 @@ class TurnedWalls:
     energy: float
 
 
-def turned_walls(
-    mesh: TetMesh, part: Part, solved: SolvedTorsion, material: Elastic
-) -> TurnedWalls:
-    """Of a mesh of the part's sector.
+def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> TurnedWalls:
+    """Of the walls of a mesh of the part's sector.
 
     Raises
     ------
-    MeshingError : a wall leaves the meridian. MeshQualityError : the mesh has no walls.
+    MeshingError : a wall leaves the meridian.
     """
-    walls, turn = Walls.of(mesh, part), solved.turn
+    turn = solved.turn
     psi = walls.places(turn.space).see(turn.psi)
     shear = material.mu * walls.r.ravel() * psi.grad
     pull = walls.pull({R_THETA: shear[0], THETA_Z: shear[1]})
     turned = walls.r * np.asarray(psi).reshape(walls.r.shape)
-    energy = -float(np.sum(pull[TANGENTIAL] * turned)) * 360 / mesh.sector_deg
+    energy = -float(np.sum(pull[TANGENTIAL] * turned)) * walls.copies
     return TurnedWalls(walls.forces(-pull), energy)
 
 
@@ -216,15 +219,14 @@ class WallWave:
 
 
 def lobed_walls(
-    mesh: TetMesh, repeats: int, part: Part, solved: SolvedLobes, material: Elastic
+    walls: Walls, repeats: int, solved: SolvedLobes, material: Elastic
 ) -> Iterator[WallWave]:
-    """The waves of the lobe load on a mesh of half a repeat, or of half the part (`repeats` 1).
+    """The waves of the lobe load on the walls of half a repeat, or of half the part (`repeats` 1).
 
     Raises
     ------
-    MeshingError : a wall leaves the meridian. MeshQualityError : the mesh has no walls.
+    MeshingError : a wall leaves the meridian.
     """
-    walls = Walls.of(mesh, part)
     places = walls.places(solved.space)
     of_wave: dict[CyclicWave, list[np.ndarray]] = {}
     for number, amplitude in enumerate(solved.amplitudes):
@@ -243,7 +245,7 @@ def lobed_walls(
         sums[1] += moved
     for wave, (pull, moved) in of_wave.items():
         work = float(np.sum(pull.conjugate() * moved).real)
-        energy = -work * wave.times * 360 / mesh.sector_deg
+        energy = -work * wave.times * walls.copies
         yield WallWave(wave, walls.forces(-pull), energy)
 
 
