@@ -7,7 +7,7 @@ one before, K_1 − K_2 = d leaves d·q/(1 − q).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,9 +32,33 @@ class EstimatedBounds(NamedTuple):
         return (self.upper - self.lower) / (2 * self.K)
 
 
+@dataclass(frozen=True)
+class MeshResult:
+    """What one mesh tells of K: an upper end, but for `doubt`.
+
+    Attributes
+    ----------
+    level : the mesh, with its own K.
+    error : estimated, of the K that it gives, over that.
+    better_Nm_per_rad : that K, where it is a better one than the mesh's own.
+    doubt : of K, over it, to both sides: what no finer mesh takes away.
+    """
+
+    level: MeshLevel
+    error: float
+    better_Nm_per_rad: float | None = None
+    doubt: float = 0.0
+
+    @property
+    def K_Nm_per_rad(self) -> float:
+        """That it gives."""
+        better = self.better_Nm_per_rad
+        return self.level.K_Nm_per_rad if better is None else better
+
+
 @dataclass
 class ScaledEstimate:
-    """K and its estimated errors of meshes, coarse to fine.
+    """K and its estimated errors by meshes, coarse to fine.
 
     Attributes
     ----------
@@ -44,51 +68,46 @@ class ScaledEstimate:
 
     usual: float
     believed: tuple[float, float]
-    levels: list[MeshLevel] = field(default_factory=list)
+    meshes: list[MeshResult] = field(default_factory=list)
     falls: tuple[float, float] | None = None
     """The range of q where each mesh follows the errors of the one before and has twice its elements."""
-    estimates: list[float] = field(default_factory=list)
-    """Relative, of each mesh's own K."""
-    found: list[float] = field(default_factory=list)
-    """K by each mesh [N·m/rad]: its own, or a better one that is above K too."""
-    doubt: float = 0.0
-    """Relative, to both sides, of the last of these K: what no finer mesh takes away."""
 
-    def add(
-        self,
-        level: MeshLevel,
-        relative: float,
-        K_Nm_per_rad: float | None = None,
-        doubt: float = 0.0,
-    ) -> None:
-        """One more mesh; `relative`, the estimate, is of `K_Nm_per_rad` where the mesh's own is not used."""
-        self.levels.append(level)
-        self.estimates.append(relative)
-        self.found.append(level.K_Nm_per_rad if K_Nm_per_rad is None else K_Nm_per_rad)
-        self.doubt = doubt
+    def add(self, found: MeshResult) -> None:
+        """By one more mesh."""
+        self.meshes.append(found)
+
+    def with_mesh(self, found: MeshResult) -> ScaledEstimate:
+        """What `add` makes of a copy."""
+        return replace(self, meshes=[*self.meshes, found])
+
+    @property
+    def levels(self) -> tuple[MeshLevel, ...]:
+        """The meshes."""
+        return tuple(m.level for m in self.meshes)
 
     @property
     def K_Nm_per_rad(self) -> float:
         """By the finest mesh."""
-        return self.found[-1]
+        return self.meshes[-1].K_Nm_per_rad
 
     @property
     def scale(self) -> float:
         """c, true over estimated error; the believed range's upper end where the estimate did not fall, and
         as much more as K's falls tell."""
-        if len(self.levels) < 2:
+        if len(self.meshes) < 2:
             return self.usual
-        before, last = self.found[-2:]
-        promised = self.estimates[-2] * before - self.estimates[-1] * last
-        c = (before - last) / promised if promised > 0 else self.believed[1]
-        return max(float(np.clip(c, *self.believed)), self._left / self.estimates[-1])
+        before, last = self.meshes[-2:]
+        promised = before.error * before.K_Nm_per_rad - last.error * last.K_Nm_per_rad
+        fell = before.K_Nm_per_rad - last.K_Nm_per_rad
+        c = fell / promised if promised > 0 else self.believed[1]
+        return max(float(np.clip(c, *self.believed)), self._left / last.error)
 
     @property
     def _left(self) -> float:
         """Error of the finest mesh's K over that K by K's last two falls; 0 where they are not asked."""
-        if self.falls is None or len(self.levels) < 3:
+        if self.falls is None or len(self.meshes) < 3:
             return 0.0
-        K = self.found[-3:]
+        K = [m.K_Nm_per_rad for m in self.meshes[-3:]]
         before, last = K[0] - K[1], K[1] - K[2]
         q = float(np.clip(last / before, *self.falls)) if before > 0 else self.falls[1]
         return last * q / (1 - q) / K[-1]
@@ -96,11 +115,11 @@ class ScaledEstimate:
     @property
     def relative(self) -> float:
         """Error of the finest mesh's energy over that energy."""
-        return self.scale * self.estimates[-1]
+        return self.scale * self.meshes[-1].error
 
     def at_given_angle(self) -> EstimatedBounds:
         """Of a K that is proportional to the energy: a mesh stores too much of it."""
-        K, error, doubt = self.K_Nm_per_rad, self.relative, self.doubt
+        K, error, doubt = self.K_Nm_per_rad, self.relative, self.meshes[-1].doubt
         return EstimatedBounds(K * (1 - error), K * (1 - 2 * error - doubt), K * (1 + doubt))
 
     def at_given_torque(self, missing: float = 0.0) -> EstimatedBounds:
@@ -108,6 +127,6 @@ class ScaledEstimate:
 
         `missing` bounds, relative, what it lacks besides, such as load that is left out.
         """
-        K, error, doubt = self.K_Nm_per_rad, self.relative, self.doubt
+        K, error, doubt = self.K_Nm_per_rad, self.relative, self.meshes[-1].doubt
         lower = K / (1 + 2 * error + missing + doubt)
         return EstimatedBounds(K / (1 + error + missing / 2), lower, K / (1 - doubt))

@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
-from typing import Any
 
 from flexspline.fea.axisymmetric.lobes import solved_lobes
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.lobes import lobe_stiffness
-from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE
+from flexspline.fea.solid.field_solver import CORRECTION_SCALES
+from flexspline.fea.solid.lobe_field import LobeCorrection
 from flexspline.fea.solid.superposition import WholeUnderLobes, at_holes
 from flexspline.fea.types import Stiffness, TetMesh
-from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.by_harmonics import rim_by_harmonics
 from flexspline.pipeline.enclosed_part import without_holes
 from flexspline.pipeline.part_stiffness import rim_mesh
-from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.rim_case import RimCase, free_rim, held_rim
-from flexspline.pipeline.solid_lobes import first_rim_spec, swept_rim
-from flexspline.pipeline.solid_torsion import SOLID_SECONDS
+from flexspline.pipeline.solid_lobes import first_rim_spec, on_meshes, swept_rim
 
 FINER_EDGES = (0.6, 0.36)
 """Edges of the second and third mesh over those of the first."""
@@ -36,23 +33,8 @@ def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
     ------
     ComputationError, MemoryError
     """
-    context = flexspline.context
-
-    def make() -> Stiffness:
-        with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
-            return lobe_stiffness(
-                _meshes(flexspline),
-                flexspline.material,
-                supported,
-                flexspline.tolerance,
-                sector_of(flexspline.part, "lobes").label,
-                lambda text: context.progress.note(f"  {text}"),
-                SOLID_SECONDS,
-                _wholes(flexspline, supported),
-            )
-
-    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
-    return context.cache.get("lobes with holes", inputs, make, is_lasting)[0]
+    field = LobeCorrection(flexspline.material, supported, _wholes(flexspline, supported))
+    return on_meshes("lobes with holes", flexspline, field, _meshes(flexspline))
 
 
 def _wholes(flexspline: PartModel, supported: bool) -> Iterator[WholeUnderLobes]:
@@ -77,9 +59,9 @@ def _meshes(flexspline: PartModel) -> Iterator[tuple[TetMesh, float]]:
     ------
     SolidError : the next one would be too large, or fails a check.
     """
-    yield rim_mesh(flexspline).mesh, HOLES_ERROR_SCALE
+    yield rim_mesh(flexspline).mesh, CORRECTION_SCALES.usual
     if not flexspline.is_swept:
         return
     first = first_rim_spec(flexspline)
     for edges in FINER_EDGES:
-        yield swept_rim(flexspline, first.scaled(edges)), HOLES_ERROR_SCALE
+        yield swept_rim(flexspline, first.scaled(edges)), CORRECTION_SCALES.usual

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from flexspline.fea.errors import SolidError, TooManyElementsError
+from flexspline.fea.solid.field_solver import FULL_SCALES
+from flexspline.fea.solid.lobe_field import FullLobes, LobeSolver
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.stiffness import USUAL_ERROR_SCALE
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
@@ -41,23 +42,37 @@ def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
     ------
     ComputationError, MemoryError
     """
+    field = FullLobes(flexspline.material, supported)
+    return on_meshes("lobes", flexspline, field, lobe_meshes(flexspline, supported))
+
+
+def on_meshes(
+    kept_as: str,
+    flexspline: PartModel,
+    field: LobeSolver,
+    meshes: Iterator[tuple[TetMesh, float]],
+) -> Stiffness:
+    """K_b by a field on meshes as of `lobe_meshes`, from the cache where it is there, under that name.
+
+    Raises
+    ------
+    ComputationError, MemoryError : of the first mesh.
+    """
     context = flexspline.context
-    sector = sector_of(flexspline.part, "lobes")
 
     def make() -> Stiffness:
-        with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
+        with context.progress.stage("lobes" if field.supported else "lobes, rim unsupported"):
             return lobe_stiffness(
-                lobe_meshes(flexspline, supported),
-                flexspline.material,
-                supported,
+                meshes,
+                field,
                 flexspline.tolerance,
-                sector.label,
+                sector_of(flexspline.part, "lobes").label,
                 lambda text: context.progress.note(f"  {text}"),
                 SOLID_SECONDS,
             )
 
-    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
-    return context.cache.get("lobes", inputs, make, is_lasting)[0]
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": field.supported}
+    return context.cache.get(kept_as, inputs, make, is_lasting)[0]
 
 
 def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMesh, float]]:
@@ -78,7 +93,7 @@ def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMes
             if number == 0 and not begins:
                 yield _of_torsion(flexspline, supported)
             raise
-        yield mesh, USUAL_ERROR_SCALE
+        yield mesh, FULL_SCALES.usual
 
 
 def _usual_of_held(flexspline: PartModel) -> float:

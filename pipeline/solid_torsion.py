@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 from math import inf, log2
@@ -24,6 +23,7 @@ from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.superposition import WholeTurned, at_holes
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
+from flexspline.fea.solid.torsion_field import FullTorsion, TorsionCorrection, TorsionSolver
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
@@ -179,10 +179,11 @@ def _holes_alone(model: PartModel, tolerance: float) -> bool:
     return not (tolerance == inf or by_name or part.bolts is None or part.keyway is not None)
 
 
-def _wholes_turned(model: PartModel, tolerance: float) -> Iterator[WholeTurned] | None:
-    """The part without its holes, better and better, where `_holes_alone`, and it can be solved."""
+def _field(model: PartModel, tolerance: float) -> TorsionSolver:
+    """What the holes change, where `_holes_alone` and the part without them can be solved; else all of it."""
+    full = FullTorsion(model.material, model.part.driven)
     if not _holes_alone(model, tolerance):
-        return None
+        return full
     part, whole = model.part, model.part.without_holes()
     box, longest_mm = at_holes(part)
     each = solved_torsions(
@@ -192,10 +193,11 @@ def _wholes_turned(model: PartModel, tolerance: float) -> Iterator[WholeTurned] 
     wholes = (WholeTurned(part, finer, coarser) for coarser, finer in pairwise(each))
     with model.context.progress.stage(f"torsion of the {model.name} without holes"):
         try:
-            return chain([next(wholes)], wholes)
+            first = next(wholes)
         except (ComputationError, StopIteration) as fault:
             model.context.progress.note(f"  {model.name}: not solved without its holes, {fault}")
-            return None
+            return full
+    return TorsionCorrection(full.material, full.driven, chain([first], wholes))
 
 
 def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: float) -> TwistedPart:
@@ -229,13 +231,11 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
 
     found = solid_stiffness(
         MeshSequence(mesher, first, by_error, most),
-        model.material,
-        model.part.driven,
+        _field(model, tolerance),
         tolerance,
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
         Deadline(seconds),
-        _wholes_turned(model, tolerance),
     )
     meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]

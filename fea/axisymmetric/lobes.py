@@ -27,7 +27,7 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refinements
-from flexspline.fea.scaled_estimate import ScaledEstimate
+from flexspline.fea.scaled_estimate import MeshResult, ScaledEstimate
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.percent import percent
@@ -176,7 +176,7 @@ class _RevolvedLobes:
         model = HarmonicModel(mesh, self._material)
         self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
         self.space, self.mesh = model.space, mesh
-        self.estimate.add(_level(model, self.found), self.found.estimate)
+        self.estimate.add(MeshResult(_level(model, self.found), self.found.estimate))
 
     @property
     def missing(self) -> float:
@@ -186,7 +186,7 @@ class _RevolvedLobes:
     @property
     def met(self) -> bool:
         doubt = 2 * self.estimate.relative + self.missing
-        return len(self.estimate.levels) > 1 and doubt < self._relative_width
+        return len(self.estimate.meshes) > 1 and doubt < self._relative_width
 
     def stiffness(self, shortfall: Shortfall) -> Stiffness:
         """K between its bounds."""
@@ -201,10 +201,10 @@ class _RevolvedLobes:
             symmetry="body of revolution",
             method=(
                 f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery "
-                f"estimate (Zienkiewicz-Zhu) on {len(self.estimate.levels)} meshes, scaled by "
+                f"estimate (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by "
                 f"{self.estimate.scale:.2f}"
             ),
-            levels=tuple(self.estimate.levels),
+            levels=self.estimate.levels,
             error_scale=self.estimate.scale,
             shortfall=shortfall,
             harmonics=tuple(each / sum(self.found.energies) for each in self.found.energies),

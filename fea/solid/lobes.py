@@ -13,7 +13,7 @@ from math import inf, sqrt
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
-from flexspline.fea.axisymmetric.lobes import TORQUE, solve_lobes
+from flexspline.fea.axisymmetric.lobes import solve_lobes
 from flexspline.fea.axisymmetric.marking import bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.deadline import Deadline
@@ -22,18 +22,10 @@ from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.cyclic import half_repeat, larger_deg
-from flexspline.fea.solid.load_cases import lobe_correction, lobes
+from flexspline.fea.solid.lobe_field import LobeSolver
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import (
-    ERROR_SCALES,
-    HOLES_ERROR_SCALES,
-    OF_THE_HOLES,
-    level_of,
-)
-from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.solid.superposition import WholeUnderLobes
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
-from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness, TetMesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.percent import percent
 
 LOBE_STEP = 0.37
@@ -88,13 +80,11 @@ class _FreeRim:
 
 def lobe_stiffness(
     meshes: Iterator[tuple[TetMesh, float]],
-    material: Elastic,
-    supported: bool,
+    field: LobeSolver,
     tolerance: float,
     symmetry: str,
     progress: Callable[[str], None],
     limit_s: float = inf,
-    wholes: Iterator[WholeUnderLobes] | None = None,
 ) -> Stiffness:
     """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
 
@@ -104,20 +94,16 @@ def lobe_stiffness(
     two say (see `fea.solid.stiffness`). Where a mesh after the first fails, or would end `limit_s` seconds
     after that was made, or there are no more, `shortfall` says so.
 
-    `wholes` : the part without its holes under the load, solved better and better, one for each mesh: where
-    only what holes change is asked of the meshes.
-
     Raises
     ------
     ComputationError, MemoryError : of the first mesh.
     """
     mesh, usual = next(meshes)
-    estimate = ScaledEstimate(usual, ERROR_SCALES if wholes is None else HOLES_ERROR_SCALES)
+    estimate = ScaledEstimate(usual, field.scales.believed)
     rest = (mesh for mesh, _ in meshes)
-    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate, wholes)
+    found = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
     shortfall = refine(found, mesh, Deadline(limit_s))
     bounds = estimate.at_given_torque()
-    of = f"{OF_THE_HOLES} " if wholes else ""
     return Stiffness(
         K_Nm_per_rad=bounds.K,
         lower_Nm_per_rad=bounds.lower,
@@ -125,11 +111,11 @@ def lobe_stiffness(
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,
-        method=(
-            f"{of}recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
+        method=field.method(
+            "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
             f" {estimate.scale:.2f}"
         ),
-        levels=tuple(estimate.levels),
+        levels=estimate.levels,
         error_scale=estimate.scale,
         shortfall=shortfall,
     )
@@ -140,42 +126,20 @@ class _SolidLobes:
     """The case on one mesh after the other, the rest after the first; what they gave is in `estimate`."""
 
     meshes: Iterator[TetMesh]
-    material: Elastic
-    supported: bool
+    field: LobeSolver
     tolerance: float
     symmetry: str
     progress: Callable[[str], None]
     estimate: ScaledEstimate
-    wholes: Iterator[WholeUnderLobes] | None
-    whole: WholeUnderLobes | None = None
 
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
-            model = Model.of(half_repeat(mesh), self.material)
-            wholes = self.wholes
-            elements = (
-                self._solve_all(model) if wholes is None else self._solve_holes(model, wholes)
-            )
-        self.progress(f"{elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}")
-
-    def _solve_all(self, model: Model) -> int:
-        solved = lobes(model, self.supported)
-        error = energy_error(solved.mesh, solved.displacement, self.material)
-        self.estimate.add(level_of(solved), error.relative)
-        return solved.mesh.elements
-
-    def _solve_holes(self, model: Model, wholes: Iterator[WholeUnderLobes]) -> int:
-        self.whole = whole = next(wholes, self.whole)
-        assert whole is not None
-        found, known = lobe_correction(model, self.supported, whole), whole.stiffness
-        error = energy_error(found.mesh, found.displacement, self.material)
-        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM) + found.lost
-        K = TORQUE**2 / work / NMM_PER_NM
-        estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
-        level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
-        doubt = known.half_width + found.doubt / work
-        self.estimate.add(level, float(estimate), doubt=doubt)
-        return found.mesh.elements
+            model = Model.of(half_repeat(mesh), self.field.material)
+            found = self.field.solve(model)
+        self.estimate.add(found)
+        self.progress(
+            f"{found.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
+        )
 
     @property
     def half(self) -> float:

@@ -13,39 +13,22 @@ Where a finer mesh fails, is too large or is out of time, the answer is that of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
-from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.load_cases import (
-    BALANCE_LIMIT,
-    Solved,
-    SolvedCorrection,
-    SolvedStiffness,
-    torsion,
-    torsion_and_correction,
-)
+from flexspline.fea.solid.load_cases import BALANCE_LIMIT, Solved
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
-from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.solid.superposition import WholeTurned
-from flexspline.fea.types import (
-    NMM_PER_NM,
-    Elastic,
-    MeshLevel,
-    Shortfall,
-    Stiffness,
-    TetMesh,
-)
+from flexspline.fea.solid.torsion_field import CorrectionError, FullTorsion, TorsionSolver
+from flexspline.fea.types import Shortfall, Stiffness, TetMesh
 from flexspline.geometry.percent import percent
 
 Mesher = Callable[[MeshSpec], TetMesh]
@@ -55,17 +38,6 @@ where a specification tells the next one."""
 MAX_LEVELS = 5
 """Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
 their edges go to as little as 1/256."""
-ERROR_SCALES = (1.5, 3.1)
-"""Range of c believed: 1.5 to 2.8 on cups, hats and shafts, swept and not, against two-sided bounds."""
-ERROR_SCALES_BY_ERROR = (2.5, 4.2)
-"""The same on meshes that follow the error: 4.0 and 4.2 with 31 000 and 62 000 elements of a shaft with three
-wide holes, against 128 000; its first two meshes told 2.0, and the bounds from that missed K by 0.05 %."""
-USUAL_ERROR_SCALE = 2.0
-"""c before two meshes can tell, the middle of those measured: the bounds hold for c up to twice it."""
-HOLES_ERROR_SCALE, HOLES_ERROR_SCALES = 3.5, (3.5, 6.5)
-"""The same of what holes change: 1.5 to 3.2 by the first two meshes of 22 random cups, hats and shafts, 5.1
-and 6.3 on two shafts. Two meshes may tell too little: of 13 holes 45 diameters deep they told 2.5, and the
-third, with more elements about the holes, fell by four times as much. They are believed from the usual on."""
 NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
 length there, so that is refined by as much as is still missing, within this range. Around them and
@@ -77,13 +49,6 @@ a cup, and was not done in 45 s with the shortest step."""
 AIMED_SHARE = 0.9
 """Share of the tolerance that the next mesh aims at: it mostly gives more, since the usual factor of a first
 mesh is a cautious one. With 0.7 and 0.95 as many of 49 random shafts met the tolerance."""
-LEAST_LEFT = 0.1
-"""Of K without holes: less is the small difference of two large numbers."""
-OF_THE_HOLES = (
-    "the part without holes on its meridian, and what the holes change by solid meshes (Bueckner's"
-    " superposition); of that change,"
-)
-"""How K is found so; what says how large the error is follows."""
 
 
 @dataclass(frozen=True)
@@ -114,27 +79,23 @@ class RefinedStiffness:
 
 def solid_stiffness(
     meshes: MeshSequence,
-    material: Elastic,
-    driven: str,
+    field: TorsionSolver,
     tolerance: float,
     symmetry: str,
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
-    wholes: Iterator[WholeTurned] | None = None,
 ) -> RefinedStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
-    `wholes` : the part without its holes, solved better and better, one for each mesh: where only what holes
-    change is asked of the meshes.
-
-    Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
-    the last has more elements than `meshes` allows, or MAX_LEVELS are solved.
+    Where a correction fails, this mesh and those after it solve all of the field. `shortfall` says why the
+    tolerance was not reached: a finer mesh failed or would end after the deadline, the last has more elements
+    than `meshes` allows, or MAX_LEVELS are solved.
 
     Raises
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(meshes, material, driven, tolerance, progress, deadline, wholes)
+    found = _SolidTorsion(meshes, field, tolerance, progress, deadline)
     mesh = found.mesh(meshes.first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
@@ -149,21 +110,17 @@ class _SolidTorsion:
     """The meshes so far, the finest one's solution for 1 rad, and how far off its K is."""
 
     def __init__(
-        self, meshes: MeshSequence, material: Elastic, driven: str, tolerance: float,
-        progress: Callable[[str], None], deadline: Deadline,
-        wholes: Iterator[WholeTurned] | None,
-    ) -> None:  # fmt: skip
+        self,
+        meshes: MeshSequence,
+        field: TorsionSolver,
+        tolerance: float,
+        progress: Callable[[str], None],
+        deadline: Deadline,
+    ) -> None:
         self._sequence, self._spec = meshes, meshes.first
-        self._material, self._driven = material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
-        self._wholes = wholes
-        self._whole: WholeTurned | None = None
-        self.estimate = (
-            ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
-            if wholes is None
-            else ScaledEstimate(HOLES_ERROR_SCALE, HOLES_ERROR_SCALES)
-        )
+        self._field, self.estimate = field, _of(field)
         self.meshes: list[TetMesh] = []
 
     def mesh(self, spec: MeshSpec) -> TetMesh:
@@ -176,45 +133,26 @@ class _SolidTorsion:
         with alone(mesh.elements):
             # a turn that is waited for, or another program, is no work
             began_s = self._deadline.working()
-            model = Model.of(mesh, self._material)
-            if self._wholes is None or not self._solve_holes(model, self._wholes):
-                self._solve_all(model)
+            self._add(Model.of(mesh, self._field.material))
             self._last_s += self._deadline.working() - began_s
         self.meshes.append(mesh)
         self._progress(f"{mesh.elements} elements, K ± {percent(self.half)}")
 
-    def _solve_all(self, model: Model) -> None:
-        solved = torsion(model, self._driven)
-        error = energy_error(model.mesh, solved.displacement, self._material)
-        self.solved, self._errors = solved, error.error
-        self.estimate.add(level_of(solved), error.relative)
-
-    def _solve_holes(self, model: Model, wholes: Iterator[WholeTurned]) -> bool:
-        """False where that fails, or cannot be: from then on meshes solve all of the field."""
-        self._whole = whole = next(wholes, self._whole)
-        assert whole is not None
+    def _add(self, model: Model) -> None:
+        """Where this raises, the meshes before still stand."""
         try:
-            if self._added(torsion_and_correction(model, self._driven, whole), whole):
-                return True
-            self._progress("what the holes change says too little of K")
-        except (MeshingError, MeshQualityError) as fault:
+            found = self._field.solve(model)
+            estimate = self.estimate.with_mesh(found)
+            own = found.level.K_Nm_per_rad * (1 + BALANCE_LIMIT)
+            if estimate.at_given_angle().lower > own:
+                raise CorrectionError("what the holes change leaves more than all of the field")
+        except CorrectionError as fault:
             self._progress(str(fault))
-        self._wholes = None
-        self.estimate = ScaledEstimate(USUAL_ERROR_SCALE, ERROR_SCALES)
-        return False
-
-    def _added(self, found: tuple[SolvedStiffness, SolvedCorrection], whole: WholeTurned) -> bool:
-        """Whether K is known by it, and not above that of the whole field, which it never is."""
-        (solved, correction), known = found, whole.solved.stiffness
-        K = known.K_Nm_per_rad - correction.lost / NMM_PER_NM
-        if LEAST_LEFT * known.K_Nm_per_rad > K:
-            return False
-        error = energy_error(correction.mesh, correction.displacement, self._material)
-        estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
-        doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
-        self.solved, self._errors = solved, error.error
-        self.estimate.add(level_of(solved), float(estimate / K), K, doubt / K)
-        return self.estimate.at_given_angle().lower <= solved.K_energy * (1 + BALANCE_LIMIT)
+            full = FullTorsion(self._field.material, self._field.driven)
+            found = full.solve(model)
+            estimate = _of(full).with_mesh(found)
+            self._field = full
+        self.estimate, self.solved, self._errors = estimate, found.solved, found.errors
 
     @property
     def half(self) -> float:
@@ -230,8 +168,8 @@ class _SolidTorsion:
             return None
         made = self._sequence.by_error(mesh, self._errors, self.half / self._tolerance)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            own = ERROR_SCALES_BY_ERROR if self._wholes is None else HOLES_ERROR_SCALES
-            self.estimate.believed, self.estimate.falls = own, ERROR_RATIOS
+            self.estimate.believed = self._field.scales.by_error
+            self.estimate.falls = ERROR_RATIOS
             return made
         step = near_step(self._tolerance, self.half)
         left_s = self._deadline.limit_s - self._deadline.elapsed()
@@ -242,17 +180,13 @@ class _SolidTorsion:
 
     def answer(self, symmetry: str, shortfall: Shortfall) -> Stiffness:
         """The stiffness; its lower end is an estimate."""
-        estimate, meshes = self.estimate, len(self.meshes)
+        estimate, meshes = self.estimate, len(self.estimate.meshes)
         found = estimate.at_given_angle()
         how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"
-        recovery = (
+        error = (
             "recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by"
             f" {estimate.scale:.2f}, {how}"
         )
-        if self._wholes is None:
-            method = f"{recovery}; K = finest mesh less the scaled estimate"
-        else:
-            method = f"{OF_THE_HOLES} {recovery}"
         return Stiffness(
             K_Nm_per_rad=found.K,
             lower_Nm_per_rad=found.lower,
@@ -260,11 +194,16 @@ class _SolidTorsion:
             guaranteed=False,  # the lower end is an estimate
             model="solid",
             symmetry=symmetry,
-            method=method,
-            levels=tuple(estimate.levels),
+            method=self._field.method(error),
+            levels=estimate.levels,
             error_scale=estimate.scale,
             shortfall=shortfall,
         )
+
+
+def _of(field: TorsionSolver) -> ScaledEstimate:
+    """Of no mesh yet."""
+    return ScaledEstimate(field.scales.usual, field.scales.believed)
 
 
 def near_step(tolerance: float, half: float) -> float:
@@ -281,16 +220,4 @@ def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:
     envelope = min(spec.envelope, near / ENVELOPES_PER_EDGE)
     return replace(
         spec, grading=Grading(near, g.far * FAR_STEP, g.growth * FAR_STEP), envelope=envelope
-    )
-
-
-def level_of(solved: SolvedStiffness) -> MeshLevel:
-    """What one mesh gave."""
-    return MeshLevel(
-        shortest_edge_mm=solved.mesh.shortest_edge_mm,
-        elements=len(solved.mesh.cells),
-        dofs=solved.dofs,
-        K_Nm_per_rad=solved.K_energy,
-        K_check_Nm_per_rad=solved.K_check,
-        residual=solved.residual,
     )

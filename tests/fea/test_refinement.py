@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 
 import pytest
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine, refinements
-from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
+from flexspline.fea.scaled_estimate import ERROR_RATIOS, MeshResult, ScaledEstimate
 from flexspline.fea.types import MeshLevel
 from flexspline.geometry.errors import ComputationError
 
@@ -100,16 +100,16 @@ def test_what_was_found_can_be_seen_after_each_mesh() -> None:
     assert seen == [(1, False), (2, False), (3, False), (3, True)]
 
 
-def level(K: float) -> MeshLevel:
-    return MeshLevel(shortest_edge_mm=1.0, elements=1, dofs=1, K_Nm_per_rad=K)
+def mesh_of(K: float, error: float) -> MeshResult:
+    return MeshResult(MeshLevel(shortest_edge_mm=1.0, elements=1, dofs=1, K_Nm_per_rad=K), error)
 
 
 def test_two_meshes_give_the_scale_of_an_estimate() -> None:
     """K = 100; upper bounds 10 and 4 too large, of which the estimate sees 40 %: c = 2.5."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(level(110.0), 4.0 / 110.0)
+    found.add(mesh_of(110.0, 4.0 / 110.0))
     assert (found.scale, found.relative) == (2.0, 2.0 * 4.0 / 110.0)
-    found.add(level(104.0), 1.6 / 104.0)
+    found.add(mesh_of(104.0, 1.6 / 104.0))
     assert found.scale == pytest.approx(2.5, rel=1e-12)
     bounds = found.at_given_angle()
     assert bounds == pytest.approx((100.0, 96.0, 104.0), rel=1e-12)
@@ -118,8 +118,8 @@ def test_two_meshes_give_the_scale_of_an_estimate() -> None:
 def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
     """1/K = 0.0100; meshes 10 and 4 % too stiff by their energy, a hundredth of it left out besides."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(level(1 / 0.0090), 0.0004 / 0.0090)
-    found.add(level(1 / 0.0096), 0.00016 / 0.0096)
+    found.add(mesh_of(1 / 0.0090, 0.0004 / 0.0090))
+    found.add(mesh_of(1 / 0.0096, 0.00016 / 0.0096))
     assert 1 / found.at_given_torque().upper == pytest.approx(0.0096)
     error = found.relative
     assert [1 / K for K in found.at_given_torque()] == pytest.approx(
@@ -136,19 +136,20 @@ def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
 def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected: float) -> None:
     """Too large, too small, and an estimate that rose, which says nothing: the careful end."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(level(110.0), 4.0 / 110.0)
-    found.add(level(K), estimate / K)
+    found.add(mesh_of(110.0, 4.0 / 110.0))
+    found.add(mesh_of(K, estimate / K))
     assert found.scale == expected
 
 
 def test_what_no_mesh_takes_away_is_added_to_both_ends() -> None:
     """Of the last mesh: K₀ and its field are solved better for each."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(level(100.0), 0.01, 90.0, doubt=0.5)
-    found.add(level(100.0), 0.01, 90.0, doubt=0.02)
+    own = mesh_of(100.0, 0.01)
+    found.add(replace(own, better_Nm_per_rad=90.0, doubt=0.5))
+    found.add(replace(own, better_Nm_per_rad=90.0, doubt=0.02))
     none = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
     for _ in range(2):
-        none.add(level(90.0), 0.01)
+        none.add(mesh_of(90.0, 0.01))
     assert found.K_Nm_per_rad == 90.0
     with_it, without = found.at_given_angle(), none.at_given_angle()
     assert with_it.K == without.K
@@ -168,11 +169,9 @@ def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: f
     limit, first = 5140.0, 60.0
     found = ScaledEstimate(usual=2.0, believed=(2.5, 4.2), falls=ERROR_RATIOS)
     for n in range(5):
-        found.add(level(limit + first * q**n), 0.0002 * 0.95**n)
+        found.add(mesh_of(limit + first * q**n, 0.0002 * 0.95**n))
         if n >= 2:
             assert found.K_Nm_per_rad * (1 - 2 * found.relative) <= limit
-    alone = ScaledEstimate(
-        2.0, (2.5, 4.2), levels=found.levels, estimates=found.estimates, found=found.found
-    )
+    alone = ScaledEstimate(2.0, (2.5, 4.2), found.meshes)
     # what the estimate alone would claim is less than what K has still to fall where it falls slowly
     assert (alone.K_Nm_per_rad * (1 - 2 * alone.relative) > limit) is (q > 0.5)

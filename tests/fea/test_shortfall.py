@@ -12,11 +12,13 @@ from lobe_stiffness import lobe_stiffness
 from flexspline.fea.axisymmetric import lobes, peak_refinement, stress, torsion
 from flexspline.fea.errors import MemoryShortError, MesherError, MesherTimeError
 from flexspline.fea.shortfall import ToleranceError, missing_because, next_mesh_failed, settled
-from flexspline.fea.solid import stiffness as solid
+from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.field_solver import FULL_SCALES
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
@@ -111,7 +113,7 @@ def test_a_peak_before_a_mesh_that_fails(monkeypatch) -> None:
 
 def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
     """The cup as a solid; its mesher makes so many meshes, of at most `most` that are allowed."""
-    monkeypatch.setattr(solid, "MAX_LEVELS", most)
+    monkeypatch.setattr(stiffness, "MAX_LEVELS", most)
     design = load_design("examples/xb1-40.toml").model_copy(update={"flexspline": CUP})
     sector = sector_of(design.part("flexspline"), "torsion")
     said: list[str] = []
@@ -128,8 +130,7 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
 
     found = solid_stiffness(
         MeshSequence(limited, first_spec(design.part("flexspline"))),
-        STEEL,
-        "mesh",
+        FullTorsion(STEEL, "mesh"),
         1e-5,
         sector.label,
         said.append,
@@ -143,7 +144,7 @@ def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkey
     found, said = solved(1, 5, monkeypatch)
     assert WHY in found.shortfall.words
     assert WHY in said[-1]
-    assert found.error_scale == solid.USUAL_ERROR_SCALE
+    assert found.error_scale == FULL_SCALES.usual
     # one mesh: bounds as wide as twice the usual factor of true over estimated error
     assert held(found, exact)
 

@@ -16,6 +16,7 @@ from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
@@ -135,8 +136,8 @@ def solved(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> Pai
     design = hole_free(file, part, changes)
     material = Elastic.of(design.material.flexspline)
     found = solid_stiffness(
-        MeshSequence(mesher(design, part, kind), first_spec(design.part(part))), material, DRIVEN[part],
-        tolerance, "1/12", print,
+        MeshSequence(mesher(design, part, kind), first_spec(design.part(part))),
+        FullTorsion(material, DRIVEN[part]), tolerance, "1/12", print,
     ).stiffness  # fmt: skip
     exact = torsional_stiffness(design.part(part).meridian, material, DRIVEN[part], REFERENCE)
     return Pair(found, exact)

@@ -11,7 +11,8 @@ from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.errors import MeshQualityError
-from flexspline.fea.solid import stiffness
+from flexspline.fea.solid import torsion_field
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import solid_torsion
@@ -34,7 +35,7 @@ def shaft(folder: Path, design: Design = CUP) -> PartModel:
     return AnalysisContext(design, Cache(folder), Progress()).part("shaft")
 
 
-def of_all_the_field(folder: Path) -> stiffness.Stiffness:
+def of_all_the_field(folder: Path) -> Stiffness:
     design = CUP.changed({"solver.model": "solid"})
     return solid_torsion.twisted(shaft(folder, design), 0.01).stiffness
 
@@ -59,7 +60,7 @@ def test_a_keyway_is_solved_with_all_of_the_field(tmp_path: Path) -> None:
 def test_where_it_fails_all_of_the_field_is_solved(
     fault: str, tmp_path: Path, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve = stiffness.torsion_and_correction
+    solve = torsion_field.torsion_and_correction
 
     def fails(*given: Any) -> Any:
         solved, correction = solve(*given)
@@ -70,7 +71,7 @@ def test_where_it_fails_all_of_the_field_is_solved(
         share = -0.5 if fault == "contradiction" else 0.95  # of K without holes, in N·mm
         return solved, replace(correction, lost=share * 1000 * solved.K_energy)
 
-    monkeypatch.setattr(stiffness, "torsion_and_correction", fails)
+    monkeypatch.setattr(torsion_field, "torsion_and_correction", fails)
     found = solid_torsion.twisted(shaft(tmp_path), 0.01).stiffness
     monkeypatch.undo()
     assert ALONE not in found.method

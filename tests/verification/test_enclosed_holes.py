@@ -20,9 +20,9 @@ from example_files import EXAMPLES
 
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
+from flexspline.fea.solid.field_solver import FULL_SCALES
 from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, lobes, torsion
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import USUAL_ERROR_SCALE
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.unfold import unfolded
@@ -114,11 +114,11 @@ def test_the_solid_part_lies_between(case: str, record) -> None:
     error = energy_error(solved.mesh, solved.displacement, material).relative
     record(
         f"K_b of {case}, one coarse mesh", "middle of the enclosure", found.K_Nm_per_rad,
-        solved.K_energy * (1 - USUAL_ERROR_SCALE * error), "N·m/rad",
+        solved.K_energy * (1 - FULL_SCALES.usual * error), "N·m/rad",
     )  # fmt: skip
     assert found.guaranteed
     assert solved.K_energy > found.lower_Nm_per_rad  # prescribed rotation: from above
-    assert solved.K_energy * (1 - 2 * USUAL_ERROR_SCALE * error) < found.upper_Nm_per_rad
+    assert solved.K_energy * (1 - 2 * FULL_SCALES.usual * error) < found.upper_Nm_per_rad
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -153,7 +153,7 @@ def test_what_is_left_of_the_whole_field_in_the_part_is_admissible_there(case: s
     left = energy_K(solved, material, solid)
     own = twisted(case)
     error = energy_error(own.mesh, own.displacement, material).relative
-    assert left * (1 + SPLIT) > own.K_energy * (1 - 2 * USUAL_ERROR_SCALE * error)
+    assert left * (1 + SPLIT) > own.K_energy * (1 - 2 * FULL_SCALES.usual * error)
     assert left > exact(nested_bodies(part).cut).lower_Nm_per_rad
     assert left < solved.K_energy
 
@@ -170,11 +170,11 @@ def test_the_lobe_load_on_the_part_lies_between(case: str, record) -> None:
     error = energy_error(solved.mesh, solved.displacement, material).relative
     record(
         f"K_b of {case}, lobes, one coarse mesh", "middle of the enclosure", found.K_Nm_per_rad,
-        solved.K_energy * (1 - USUAL_ERROR_SCALE * error), "N·m/rad",
+        solved.K_energy * (1 - FULL_SCALES.usual * error), "N·m/rad",
     )  # fmt: skip
     assert not found.guaranteed
     assert solved.K_energy > found.lower_Nm_per_rad
-    assert solved.K_energy * (1 - 2 * USUAL_ERROR_SCALE * error) < found.upper_Nm_per_rad
+    assert solved.K_energy * (1 - 2 * FULL_SCALES.usual * error) < found.upper_Nm_per_rad
 
 
 def test_the_finest_known_answer_lies_within(record) -> None:

@@ -26,13 +26,13 @@ from flexspline.fea.axisymmetric.torsion import solved_torsions
 from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.field_solver import CORRECTION_SCALES, FULL_SCALES
 from flexspline.fea.solid.load_cases import (
     SolvedCorrection,
     SolvedStiffness,
     torsion_and_correction,
 )
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import HOLES_ERROR_SCALE, USUAL_ERROR_SCALE
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import Walls, WholeTurned, at_holes, wall_facets
 from flexspline.fea.solid.swept import swept_mesh
@@ -111,15 +111,15 @@ def test_a_coarse_mesh_knows_more_of_the_holes_than_a_fine_one_of_the_part(
     fine, fine_error = superposed(case, FINER)
     own, _ = solved(case, FINER)
     material = Elastic.of(part_of(case).material)
-    relative = USUAL_ERROR_SCALE * energy_error(own.mesh, own.displacement, material).relative
+    relative = FULL_SCALES.usual * energy_error(own.mesh, own.displacement, material).relative
     record(
         f"K of {case}, what they change on a coarse mesh", "all of the part on a finer mesh",
-        own.K_energy * (1 - relative), K - HOLES_ERROR_SCALE * error, "N·m/rad",
+        own.K_energy * (1 - relative), K - CORRECTION_SCALES.usual * error, "N·m/rad",
     )  # fmt: skip
-    assert own.K_energy * (1 - 2 * relative) < K - HOLES_ERROR_SCALE * error < own.K_energy
+    assert own.K_energy * (1 - 2 * relative) < K - CORRECTION_SCALES.usual * error < own.K_energy
     whole = whole_of(case).solved.stiffness
     assert fine < K < whole.upper_Nm_per_rad  # from above
-    assert fine > K - 2 * HOLES_ERROR_SCALE * error  # within the bounds of one mesh
+    assert fine > K - 2 * CORRECTION_SCALES.usual * error  # within the bounds of one mesh
     assert fine_error < error
     coarse_own, _ = solved(case, 1.0)
     assert K < own.K_energy < coarse_own.K_energy
@@ -144,7 +144,7 @@ def test_by_Bettis_theorem_it_is_the_same(case: str) -> None:
     by_betti = whole.solved.stiffness.K_Nm_per_rad + work
     K, _ = superposed(case, 1.0)
     best = superposed(case, FINER)
-    limit = best[0] - 2 * HOLES_ERROR_SCALE * best[1]
+    limit = best[0] - 2 * CORRECTION_SCALES.usual * best[1]
     # K₀ and u₀ are off by WIDTH themselves
     allowed = sqrt((K - limit) * (own.K_energy - limit)) + 2 * WIDTH * K
     assert by_betti == pytest.approx(K, abs=allowed)

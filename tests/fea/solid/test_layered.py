@@ -35,6 +35,7 @@ from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.tetwild import signed_volumes
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import design_from
 from flexspline.geometry.part import Part
@@ -355,7 +356,7 @@ def test_a_narrow_neck_is_found_by_its_error() -> None:
 
     wanted = 0.01
     meshes = MeshSequence(mesher, first, by_error)
-    found = solid_stiffness(meshes, material, "grip", wanted, "", print).stiffness
+    found = solid_stiffness(meshes, FullTorsion(material, "grip"), wanted, "", print).stiffness
     assert not found.shortfall
     assert found.half_width <= wanted
     assert len(found.levels) > 1
@@ -386,7 +387,7 @@ def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
     deadline = Deadline(74.0, lambda: clock[0], lambda: worked[0])
     meshes = MeshSequence(mesher, first_spec(part).scaled(4.0), by_error)
     found = solid_stiffness(
-        meshes, Elastic.of(part.material), "grip", 1e-9, "", print, deadline
+        meshes, FullTorsion(Elastic.of(part.material), "grip"), 1e-9, "", print, deadline
     ).stiffness
     assert len(found.levels) == 2  # the third would begin at 75 s
     assert "74 s" in found.shortfall.words

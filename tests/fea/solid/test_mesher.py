@@ -23,6 +23,7 @@ from flexspline.fea.solid.snap import into_sector_planes
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from, load_design
@@ -230,7 +231,7 @@ def test_few_holes_in_the_boss_hardly_matter(holes: int) -> None:
     spec = first_spec(given.part("flexspline"))
     sector = sector_of(given.part("flexspline"), "torsion")
     meshes = MeshSequence(lambda s: mesh_surface(surface, s), spec)
-    found = solid_stiffness(meshes, steel, "mesh", 0.02, sector.label, print).stiffness
+    found = solid_stiffness(meshes, FullTorsion(steel, "mesh"), 0.02, sector.label, print).stiffness
     bare = torsional_stiffness(design(0).part("flexspline").meridian, steel, "mesh", 1e-3)
     assert found.lower_Nm_per_rad < bare.upper_Nm_per_rad
     assert found.K_Nm_per_rad == pytest.approx(bare.K_Nm_per_rad, rel=0.005)

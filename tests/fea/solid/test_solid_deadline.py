@@ -11,6 +11,7 @@ from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of
@@ -38,7 +39,9 @@ def stiffness(limit_s: float, tolerance: float = FINE) -> Stiffness:
     deadline = Deadline(limit_s, *2 * [lambda: shown[0]])
     coarse, own = first_spec(SHAFT).scaled(4.0), Elastic.of(SHAFT.material)
     meshes = MeshSequence(mesher, coarse)
-    return solid_stiffness(meshes, own, "grip", tolerance, "", print, deadline).stiffness
+    return solid_stiffness(
+        meshes, FullTorsion(own, "grip"), tolerance, "", print, deadline
+    ).stiffness
 
 
 def test_a_mesh_that_would_end_too_late_is_not_begun() -> None:

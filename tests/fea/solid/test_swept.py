@@ -29,6 +29,7 @@ from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
+from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design
@@ -333,7 +334,7 @@ def test_estimated_bounds_hold_the_guaranteed_stiffness(name: str) -> None:
         return mesh
 
     meshes = MeshSequence(mesher, first_spec(design.part(part)))
-    found = solid_stiffness(meshes, material, DRIVEN[part], 0.005, "", print).stiffness
+    found = solid_stiffness(meshes, FullTorsion(material, DRIVEN[part]), 0.005, "", print).stiffness
     exact = guaranteed(name)
     assert found.lower_Nm_per_rad < exact.K_Nm_per_rad < found.upper_Nm_per_rad
     error = found.upper_Nm_per_rad - exact.K_Nm_per_rad

@@ -1,0 +1,80 @@
+"""The lobe load on a solid mesh: all of the part's field, or only what its bolt holes change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from flexspline.fea.axisymmetric.lobes import TORQUE
+from flexspline.fea.scaled_estimate import MeshResult
+from flexspline.fea.solid.field_solver import (
+    CORRECTION_SCALES,
+    FULL_SCALES,
+    ErrorScales,
+    FieldSolver,
+    by_correction,
+    level_of,
+)
+from flexspline.fea.solid.load_cases import lobe_correction, lobes
+from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.superposition import WholeUnderLobes
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel
+
+
+class LobeSolver(FieldSolver[MeshResult], Protocol):
+    """Under the load; `supported`: the seat may not move radially."""
+
+    supported: bool
+
+
+@dataclass
+class FullLobes:
+    """All of the field."""
+
+    material: Elastic
+    supported: bool
+    scales: ErrorScales = FULL_SCALES
+
+    def solve(self, model: Model) -> MeshResult:
+        """On a mesh of half a repeat; the level is that of the quarter or half."""
+        solved = lobes(model, self.supported)
+        error = energy_error(solved.mesh, solved.displacement, self.material)
+        return MeshResult(level_of(solved), error.relative)
+
+    def method(self, error: str) -> str:
+        """As `FieldSolver.method`."""
+        return error
+
+
+@dataclass
+class LobeCorrection:
+    """What the bolt holes change of it (`fea.solid.superposition`).
+
+    `wholes` : the part without its holes under the load, solved better and better, one for each mesh, at
+    least one.
+    """
+
+    material: Elastic
+    supported: bool
+    wholes: Iterator[WholeUnderLobes]
+    scales: ErrorScales = CORRECTION_SCALES
+    _whole: WholeUnderLobes | None = None
+
+    def solve(self, model: Model) -> MeshResult:
+        """As `FullLobes.solve`; raises MeshingError, MeshQualityError as `lobe_correction` besides."""
+        self._whole = whole = next(self.wholes, self._whole)
+        assert whole is not None
+        found, known = lobe_correction(model, self.supported, whole), whole.stiffness
+        error = energy_error(found.mesh, found.displacement, self.material)
+        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM) + found.lost
+        K = TORQUE**2 / work / NMM_PER_NM
+        estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
+        level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
+        doubt = known.half_width + found.doubt / work
+        return MeshResult(level, float(estimate), doubt=doubt)
+
+    def method(self, error: str) -> str:
+        """As `FieldSolver.method`."""
+        return by_correction(error)

@@ -1,0 +1,110 @@
+"""Torsion on a solid mesh: all of the part's field, or only what its bolt holes change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.errors import MeshQualityError, SolidError
+from flexspline.fea.scaled_estimate import MeshResult
+from flexspline.fea.solid.field_solver import (
+    CORRECTION_SCALES,
+    FULL_SCALES,
+    ErrorScales,
+    FieldSolver,
+    by_correction,
+    level_of,
+)
+from flexspline.fea.solid.load_cases import Solved, torsion, torsion_and_correction
+from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.superposition import WholeTurned
+from flexspline.fea.types import NMM_PER_NM, Elastic
+
+LEAST_LEFT = 0.1
+"""Of K without holes: less is the small difference of two large numbers."""
+
+
+class CorrectionError(SolidError):
+    """What the holes change cannot be told, or says too little of K; all of the field can be solved."""
+
+
+@dataclass(frozen=True)
+class TurnedMesh(MeshResult):
+    """Of torsion, with all of the part's field for a turn of 1 rad and the errors (m,) of its elements."""
+
+    solved: Solved = field(kw_only=True)
+    errors: np.ndarray = field(kw_only=True)
+
+
+class TorsionSolver(FieldSolver[TurnedMesh], Protocol):
+    """Of a part whose `driven` patch is turned."""
+
+    driven: str
+
+
+@dataclass
+class FullTorsion:
+    """All of the field of a part whose `driven` patch is turned."""
+
+    material: Elastic
+    driven: str
+    scales: ErrorScales = FULL_SCALES
+
+    def solve(self, model: Model) -> TurnedMesh:
+        """On one mesh; raises SolidError, MemoryError."""
+        solved = torsion(model, self.driven)
+        error = energy_error(model.mesh, solved.displacement, self.material)
+        return TurnedMesh(level_of(solved), error.relative, solved=solved, errors=error.error)
+
+    def method(self, error: str) -> str:
+        """As `FieldSolver.method`."""
+        return f"{error}; K = finest mesh less the scaled estimate"
+
+
+@dataclass
+class TorsionCorrection:
+    """What the bolt holes change of it (`fea.solid.superposition`).
+
+    `wholes` : the part without its holes, solved better and better, one for each mesh, at least one.
+    """
+
+    material: Elastic
+    driven: str
+    wholes: Iterator[WholeTurned]
+    scales: ErrorScales = CORRECTION_SCALES
+    _whole: WholeTurned | None = None
+
+    def solve(self, model: Model) -> TurnedMesh:
+        """On one mesh.
+
+        Raises
+        ------
+        CorrectionError : the mesh has no walls, or one leaves the meridian; K is too small a difference, or
+            above that of the whole field, which it never is.
+        SolidError, MemoryError : of the solve.
+        """
+        self._whole = whole = next(self.wholes, self._whole)
+        assert whole is not None
+        try:
+            solved, correction = torsion_and_correction(model, self.driven, whole)
+        except (MeshingError, MeshQualityError) as fault:
+            raise CorrectionError(str(fault)) from fault
+        known = whole.solved.stiffness
+        K = known.K_Nm_per_rad - correction.lost / NMM_PER_NM
+        if LEAST_LEFT * known.K_Nm_per_rad > K:
+            raise CorrectionError("what the holes change leaves too little of K")
+        error = energy_error(correction.mesh, correction.displacement, self.material)
+        estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
+        doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
+        return TurnedMesh(
+            level_of(solved), float(estimate / K), K, doubt / K, solved=solved, errors=error.error
+        )
+
+    def method(self, error: str) -> str:
+        """As `FieldSolver.method`."""
+        return by_correction(error)
