@@ -73,6 +73,12 @@ class Part:
         """Whether the part is a body of revolution: no bolt holes, no keyway."""
         return self.bolts is None and self.keyway is None
 
+    @property
+    def cuts(self) -> str:
+        """What makes it no body of revolution, in words; empty where it is one."""
+        holes, keyway = self.bolts is not None, self.keyway is not None
+        return " and ".join(["holes"] * holes + ["keyway"] * keyway)
+
     def without_holes(self) -> Part:
         """The body of revolution that it would be: no bolt holes, no keyway."""
         if self.is_revolved:

@@ -10,7 +10,7 @@ from flexspline.fea.axisymmetric.lobes import solved_lobes
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.field_solver import CORRECTION_SCALES
 from flexspline.fea.solid.lobe_field import LobeCorrection
-from flexspline.fea.solid.superposition import WholeUnderLobes, at_holes
+from flexspline.fea.solid.superposition import WholeUnderLobes, at_cuts
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.pipeline.by_harmonics import rim_by_harmonics
 from flexspline.pipeline.enclosed_part import without_holes
@@ -43,10 +43,9 @@ def _wholes(flexspline: PartModel, supported: bool) -> Iterator[WholeUnderLobes]
     case: RimCase = "lobes" if supported else "lobes_unsupported"
     solve = held_rim if supported else free_rim
     K = without_holes(flexspline, partial(rim_by_harmonics, case=case, solve=solve))
-    box, longest_mm = at_holes(part)
     each = solved_lobes(
         part.without_holes().meridian, flexspline.material, supported,
-        FIELD_WIDTH * flexspline.tolerance, box, longest_mm, Deadline(STAGE_SECONDS),
+        FIELD_WIDTH * flexspline.tolerance, at_cuts(part), Deadline(STAGE_SECONDS),
     )  # fmt: skip
     for coarser, finer in pairwise(each):
         yield WholeUnderLobes(part, K, finer, coarser)

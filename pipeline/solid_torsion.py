@@ -21,7 +21,7 @@ from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
-from flexspline.fea.solid.superposition import WholeTurned, at_holes
+from flexspline.fea.solid.superposition import WholeTurned, at_cuts
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.solid.torsion_field import FullTorsion, TorsionCorrection, TorsionSolver
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
@@ -169,35 +169,35 @@ def twisted(
             first = replace(first.scaled(COARSER_FIRST), time_limit_s=second_s)
 
 
-def _holes_alone(model: PartModel, tolerance: float) -> bool:
-    """Whether the meshes need only tell what bolt holes change of the part without them.
+def _cuts_alone(model: PartModel, tolerance: float) -> bool:
+    """Whether the meshes need only tell what holes and keyway change of the part without them.
 
-    Not where no error is asked for, or a model is chosen by name; nor of a keyway: it is on the driven face.
+    Not where no error is asked for, or a model is chosen by name.
     """
     by_name = model.context.design.solver.model != "auto"
-    part = model.part
-    return not (tolerance == inf or by_name or part.bolts is None or part.keyway is not None)
+    return not (tolerance == inf or by_name or model.part.is_revolved)
 
 
 def _field(model: PartModel, tolerance: float) -> TorsionSolver:
-    """What the holes change, where `_holes_alone` and the part without them can be solved; else all of it."""
+    """What the cuts change, where `_cuts_alone` and the part without them can be solved; else all of it."""
     full = FullTorsion(model.material, model.part.driven)
-    if not _holes_alone(model, tolerance):
+    if not _cuts_alone(model, tolerance):
         return full
     part, whole = model.part, model.part.without_holes()
-    box, longest_mm = at_holes(part)
     each = solved_torsions(
-        whole.meridian, model.material, whole.driven, WHOLE_SHARE * tolerance, box, longest_mm,
+        whole.meridian, model.material, whole.driven, WHOLE_SHARE * tolerance, at_cuts(part),
         Deadline(STAGE_SECONDS),
     )  # fmt: skip
     wholes = (WholeTurned(part, finer, coarser) for coarser, finer in pairwise(each))
-    with model.context.progress.stage(f"torsion of the {model.name} without holes"):
+    with model.context.progress.stage(f"torsion of the {model.name} without {part.cuts}"):
         try:
             first = next(wholes)
         except (ComputationError, StopIteration) as fault:
-            model.context.progress.note(f"  {model.name}: not solved without its holes, {fault}")
+            model.context.progress.note(
+                f"  {model.name}: not solved without its {part.cuts}, {fault}"
+            )
             return full
-    return TorsionCorrection(full.material, full.driven, chain([first], wholes))
+    return TorsionCorrection(full.material, full.driven, part.cuts, chain([first], wholes))
 
 
 def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: float) -> TwistedPart:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,10 +20,11 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
 
 @dataclass(frozen=True)
 class Box:
-    """Ranges of r and z [mm] in a meridian."""
+    """Ranges of r and z [mm] in a meridian, and how long edges there may be [mm]."""
 
     r: tuple[float, float]
     z: tuple[float, float]
+    longest_mm: float
 
     def meets(self, mesh: MeridianMesh) -> np.ndarray:
         """Mask (m,) of the triangles whose own ranges meet it."""
@@ -32,11 +34,12 @@ class Box:
         return np.asarray(((high > ends[:, 0]) & (low < ends[:, 1])).all(axis=1))
 
 
-def refined_within(mesh: MeridianMesh, box: Box, longest_mm: float) -> MeridianMesh:
-    """The mesh refined until no triangle that meets the box has a longer edge."""
+def refined_within(mesh: MeridianMesh, boxes: Sequence[Box], share: float = 1.0) -> MeridianMesh:
+    """The mesh refined until no triangle that meets a box has an edge longer than `share` of its longest."""
     while True:
-        long = edge_lengths(mesh.points, mesh.triangles).max(axis=1) > longest_mm
-        if not (marked := long & box.meets(mesh)).any():
+        length = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+        long = [(length > share * box.longest_mm) & box.meets(mesh) for box in boxes]
+        if not (marked := np.logical_or.reduce(long)).any():
             return mesh
         mesh = refined(mesh, marked)
 

@@ -10,14 +10,14 @@ with n (shorter waves are stiffer) and the sum of all t_n² is known (Parseval).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import pi, sin
 
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import Box, refined_twice
-from flexspline.fea.axisymmetric.finer_in_box import finer_in_box
+from flexspline.fea.axisymmetric.finer_in_boxes import finer_in_boxes
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
@@ -121,11 +121,10 @@ def solved_lobes(
     material: Elastic,
     supported: bool,
     relative_width: float,
-    box: Box,
-    longest_mm: float,
+    boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedLobes]:
-    """The fields of the last of `lobe_stiffnesses`, on meshes finer and finer in a box.
+    """The fields of the last of `lobe_stiffnesses`, on meshes finer and finer in boxes.
 
     As of `torsion.solved_torsions`.
 
@@ -134,7 +133,7 @@ def solved_lobes(
     MeshingError, HarmonicError, OutOfTimeError
     """
     lobes, mesh = _RevolvedLobes(material, supported, relative_width), triangulate(outline)
-    for _ in finer_in_box(lobes, mesh, box, longest_mm, deadline, MOST_TRIANGLES_WITHIN):
+    for _ in finer_in_boxes(lobes, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
         yield SolvedLobes(lobes.space, lobes.found.amplitudes)
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice
-from flexspline.fea.axisymmetric.finer_in_box import finer_in_box
+from flexspline.fea.axisymmetric.finer_in_boxes import finer_in_boxes
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
@@ -70,14 +70,13 @@ def solved_torsions(
     material: Elastic,
     driven: str,
     relative_width: float,
-    box: Box,
-    longest_mm: float,
+    boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedTorsion]:
-    """`torsional_stiffness` with its field, on meshes whose triangles in a box become finer and finer.
+    """`torsional_stiffness` with its field, on meshes whose triangles in boxes become finer and finer.
 
-    Edges there are `longest_mm` at most on the first, and half as long on each mesh after it, until a third
-    one would have more than MOST_TRIANGLES_WITHIN triangles.
+    Edges there are as the boxes ask on the first, and half as long on each mesh after it, until a third one
+    would have more than MOST_TRIANGLES_WITHIN triangles.
 
     Raises
     ------
@@ -85,7 +84,7 @@ def solved_torsions(
     """
     boundary = sorted_boundary(outline, driven)
     found, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
-    for shortfall in finer_in_box(found, mesh, box, longest_mm, deadline, MOST_TRIANGLES_WITHIN):
+    for shortfall in finer_in_boxes(found, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
         yield SolvedTorsion(found.stiffness(shortfall), found.turn)
 
 

@@ -8,12 +8,17 @@ from math import inf
 
 import numpy as np
 
-from flexspline.fea.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
 from flexspline.fea.solid.elements import jacobian_ratio
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
-from flexspline.fea.solid.quadratic import JACOBIAN_RATIO, with_middles
+from flexspline.fea.solid.quadratic import (
+    JACOBIAN_RATIO,
+    straightened,
+    straightened_inside,
+    with_middles,
+)
 from flexspline.fea.solid.snap import snap_to_surfaces
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import Surface
@@ -70,9 +75,7 @@ def quadratic(
         if len(mesh.tets) > most:
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)
-    nodes = _straightened(nodes, cells, edges, np.ones(len(nodes), bool))
-    if jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
-        raise MeshQualityError("elements are badly bent even with straight edges")
+    nodes = straightened(nodes, cells, edges, facets)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
     return LayeredMesh(nodes, cells, facets, facet_patch, names, sector_deg, mesh.facet_surface)
@@ -92,21 +95,4 @@ def _curved(
     longest = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).max())
     nodes = snap_to_surfaces(nodes, facets, mesh.facet_surface, surfaces, longest)
     nodes[:n] = points
-    inside = np.ones(len(nodes), bool)
-    inside[facets.ravel()] = False
-    return _straightened(nodes, cells, edges, inside), edges, cells, facets
-
-
-def _straightened(
-    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, movable: np.ndarray
-) -> np.ndarray:
-    """Nodes (n, 3), `movable` (n,) middle ones of elements that are bent too far on straight edges."""
-    n = len(nodes) - len(edges)
-    left, out, mine = movable.copy(), nodes.copy(), cells
-    while len(mine):
-        bad = np.unique(mine[jacobian_ratio(out, mine) < JACOBIAN_RATIO, 4:])
-        bad = bad[left[bad]]
-        out[bad] = out[edges[bad - n]].mean(axis=1)
-        left[bad] = False
-        mine = cells[np.isin(cells[:, 4:], bad).any(axis=1)]
-    return out
+    return straightened_inside(nodes, cells, edges, facets), edges, cells, facets

@@ -77,4 +77,4 @@ class LobeCorrection:
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
-        return by_correction(error)
+        return by_correction("holes", error)

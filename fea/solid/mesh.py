@@ -150,7 +150,7 @@ def _quadratic(
         np.vstack([corners, middles]), facets, facet_surface, surface.surfaces, spec.snap_limit
     )
     nodes[:n] = corners
-    nodes = straightened(nodes, cells, edges)
+    nodes = straightened(nodes, cells, edges, facets)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
     made = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)

@@ -38,14 +38,44 @@ def with_middles(
     return edges, cells, np.hstack([faces, found + n])
 
 
-def straightened(nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Straighten the edges of elements that curving has bent too far: their stresses are wrong."""
+def straightened(
+    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, facets: np.ndarray
+) -> np.ndarray:
+    """Straighten the edges of elements that curving has bent too far: their stresses are wrong.
+
+    Those within the part first, so that the edges of its surface may stay: of a keyed shaft 400 edges of its
+    surface were straight for elements near its bore, and K came out 0.4 % smaller than with the 33 that must.
+
+    Raises
+    ------
+    MeshQualityError : straight edges do not help.
+    """
+    every = np.ones(len(nodes), bool)
+    nodes = straightened_of(straightened_inside(nodes, cells, edges, facets), cells, edges, every)
+    if jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
+        raise MeshQualityError("elements are badly bent even with straight edges")
+    return nodes
+
+
+def straightened_inside(
+    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, facets: np.ndarray
+) -> np.ndarray:
+    """The edges that are not on the surface."""
+    inside = np.ones(len(nodes), bool)
+    inside[facets.ravel()] = False
+    return straightened_of(nodes, cells, edges, inside)
+
+
+def straightened_of(
+    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, movable: np.ndarray
+) -> np.ndarray:
+    """Nodes (n, 3), `movable` (n,) middle ones of elements that are bent too far on straight edges."""
     n = len(nodes) - len(edges)
-    out = nodes.copy()
-    for _ in range(10):
-        bad = jacobian_ratio(out, cells) < JACOBIAN_RATIO
-        if not bad.any():
-            return out
-        middles = np.unique(cells[bad, 4:])
-        out[middles] = out[edges[middles - n]].mean(axis=1)
-    raise MeshQualityError(f"{int(bad.sum())} elements are badly bent even with straight edges")
+    left, out, mine = movable.copy(), nodes.copy(), cells
+    while len(mine):
+        bad = np.unique(mine[jacobian_ratio(out, mine) < JACOBIAN_RATIO, 4:])
+        bad = bad[left[bad]]
+        out[bad] = out[edges[bad - n]].mean(axis=1)
+        left[bad] = False
+        mine = cells[np.isin(cells[:, 4:], bad).any(axis=1)]
+    return out

@@ -5,7 +5,7 @@ estimate e_h of K_h's error is too small where stresses are singular, by a facto
 the usual c; two meshes give their own: K_1 − c·e_1 = K_2 − c·e_2. So K ≈ K_h − c·e_h, and the bounds are
 K_h − 2c·e_h and K_h.
 
-Where the part without its bolt holes is solved (`fea.solid.superposition`), all this is of what the holes
+Where the part without holes and keyway is solved (`fea.solid.superposition`), all this is of what these
 change, and K_h of the mesh is far above the K that it gives.
 
 Where a finer mesh fails, is too large or is out of time, the answer is that of the mesh before it.
@@ -23,7 +23,7 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.load_cases import BALANCE_LIMIT, Solved
+from flexspline.fea.solid.load_cases import Solved
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
@@ -38,6 +38,9 @@ where a specification tells the next one."""
 MAX_LEVELS = 5
 """Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
 their edges go to as little as 1/256."""
+MESH_LIMIT = 2e-3
+"""Of K by all of the field, which is above K of its mesh, not of the part: where edges of the surface are
+straight, a mesh has up to 1e-3 less material (`mesh_checks.SIZE_TOLERANCE`), where it counts twice."""
 NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
 length there, so that is refined by as much as is still missing, within this range. Around them and
@@ -120,7 +123,7 @@ class _SolidTorsion:
         self._sequence, self._spec = meshes, meshes.first
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._last_s = 0.0  # of the last mesh, made and solved
-        self._field, self.estimate = field, _of(field)
+        self._field = field
         self.meshes: list[TetMesh] = []
 
     def mesh(self, spec: MeshSpec) -> TetMesh:
@@ -130,6 +133,8 @@ class _SolidTorsion:
         return mesh
 
     def solve(self, mesh: TetMesh) -> None:
+        if not self.meshes:
+            self.estimate = _of(self._field, mesh)
         with alone(mesh.elements):
             # a turn that is waited for, or another program, is no work
             began_s = self._deadline.working()
@@ -143,14 +148,14 @@ class _SolidTorsion:
         try:
             found = self._field.solve(model)
             estimate = self.estimate.with_mesh(found)
-            own = found.level.K_Nm_per_rad * (1 + BALANCE_LIMIT)
+            own = found.level.K_Nm_per_rad * (1 + MESH_LIMIT)
             if estimate.at_given_angle().lower > own:
-                raise CorrectionError("what the holes change leaves more than all of the field")
+                raise CorrectionError("the correction leaves more of K than all of the field")
         except CorrectionError as fault:
             self._progress(str(fault))
             full = FullTorsion(self._field.material, self._field.driven)
             found = full.solve(model)
-            estimate = _of(full).with_mesh(found)
+            estimate = _of(full, model.mesh).with_mesh(found)
             self._field = full
         self.estimate, self.solved, self._errors = estimate, found.solved, found.errors
 
@@ -201,9 +206,9 @@ class _SolidTorsion:
         )
 
 
-def _of(field: TorsionSolver) -> ScaledEstimate:
-    """Of no mesh yet."""
-    return ScaledEstimate(field.scales.usual, field.scales.believed)
+def _of(field: TorsionSolver, first: TetMesh) -> ScaledEstimate:
+    """Of no mesh yet; `first` is the one that comes."""
+    return ScaledEstimate(field.scales.before_two(first), field.scales.believed)
 
 
 def near_step(tolerance: float, half: float) -> float:

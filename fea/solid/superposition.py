@@ -1,20 +1,20 @@
-"""What bolt holes change of a part, solved alone.
+"""What bolt holes and a keyway change of a part, solved alone.
 
-The part without its holes is a body of revolution, solved on its meridian: its field is u₀. The part's own
+The part without these cuts is a body of revolution, solved on its meridian: its field is u₀. The part's own
 field is u₀ + v: v is 0 where the part is held or turned, and its tractions take those of u₀ off the walls of
-the holes (Bueckner's superposition, Trans. ASME 80 (1958) 1225-1230, there of cracks). With E, twice the
-energy that u₀ has in the material of the holes, twice the energy of the part turned by 1 rad, and the work of
+the cuts (Bueckner's superposition, Trans. ASME 80 (1958) 1225-1230, there of cracks). With E, twice the
+energy that u₀ has in the material of the cuts, twice the energy of the part turned by 1 rad, and the work of
 a given load, are
 
     K = K₀ − E − a(v, v),    W = W₀ + E + a(v, v).
 
 A finite element field v_h stores less than v, by a(v − v_h, v − v_h): what it gives is above K. The errors
-far from the holes, most of those of a solid model, are not in it. docs/theory.md has the proof.
+far from the cuts, most of those of a solid model, are not in it. docs/theory.md has the proof.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -43,19 +43,22 @@ from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.part import Part
-from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface, Swept, part_surfaces
+from flexspline.geometry.shaft_shape import Slot
+from flexspline.geometry.surfaces import ON_SURFACE_MM, Swept, part_surfaces
 
 WALL_DEGREE = 8
 """Of quadrature on the walls: K of six hats and shafts by degree 6 and 12 differ by 2e-6."""
+IN_CUT = 1e-3
+"""Of a hole's radius or half a keyway's width: how far beyond it a facet of its wall may be, by rounding."""
 
 
 @dataclass(frozen=True)
 class Walls:
-    """Points (k, q) on the walls of the holes that a mesh's sector has.
+    """Points (k, q) on the walls of the cuts that a mesh's sector has.
 
     Attributes
     ----------
-    facets : (k, 6) the mesh's. shapes : (6, q) of a facet's nodes.
+    facets : (k, 6) the mesh's. of_slot : (k,) which are of a keyway. shapes : (6, q) of a facet's nodes.
     r, phi, z : of the points [mm, rad].
     area : (3, k, q) outward normal times weight, along r, φ, z [mm²].
     axes : (3, 3, k, q) the directions of r, φ, z, each Cartesian.
@@ -63,6 +66,7 @@ class Walls:
 
     mesh: TetMesh
     facets: np.ndarray
+    of_slot: np.ndarray
     shapes: np.ndarray
     r: np.ndarray
     phi: np.ndarray
@@ -78,9 +82,9 @@ class Walls:
         ------
         MeshQualityError : it has none.
         """
-        facets = wall_facets(mesh, part_surfaces(part, mesh.sector_deg))
+        facets = wall_facets(mesh, part)
         if not len(facets):
-            raise MeshQualityError("no facet of the mesh lies on a wall of the holes")
+            raise MeshQualityError("no facet of the mesh lies on a wall of holes or keyway")
         points, weights = get_quadrature(RefTri, WALL_DEGREE)
         element = ElementTriP2()
         each = [element.lbasis(points, i) for i in range(6)]
@@ -95,6 +99,7 @@ class Walls:
         return cls(
             mesh,
             facets,
+            _of_slot(nodes.mean(axis=1), part.keyway),
             shapes,
             np.hypot(x, y),
             phi,
@@ -135,22 +140,42 @@ class Walls:
         return found
 
 
-def wall_facets(mesh: TetMesh, surfaces: Sequence[Surface]) -> np.ndarray:
-    """Facets (k, 6) that lie on no surface of revolution and no named patch, but on another surface."""
+def wall_facets(mesh: TetMesh, part: Part) -> np.ndarray:
+    """Facets (k, 6) that lie in a cut, on no surface of revolution and no named patch."""
+    surfaces = part_surfaces(part, mesh.sector_deg)
     unnamed = mesh.facets[mesh.facet_patch == mesh.patches.index("")]
     centres = mesh.nodes[unnamed].mean(axis=1)
     off = np.array([np.linalg.norm(s.project(centres) - centres, axis=1) for s in surfaces])
     swept = np.array([isinstance(s, Swept) for s in surfaces])
-    # a blind hole may end in the plane of a step
-    return unnamed[off[~swept].min(axis=0) < off[swept].min(axis=0) - ON_SURFACE_MM]
+    # a blind hole may end in the plane of a step; a facet of a fillet may be nearer to a cut's plane
+    cut = off[~swept].min(axis=0) < off[swept].min(axis=0) - ON_SURFACE_MM
+    return unnamed[cut & (_of_hole(centres, part) | _of_slot(centres, part.keyway))]
+
+
+def _of_hole(centres: np.ndarray, part: Part) -> np.ndarray:
+    """Mask (k,) of facets, by their middles (k, 3) [mm], that a bolt hole's wall or floor may be."""
+    if (bolts := part.bolts) is None:
+        return np.zeros(len(centres), bool)
+    x, y, z = centres.T
+    away = np.min([np.hypot(x - a, y - b) for a, b in bolts.centres], axis=0)
+    room = IN_CUT * bolts.hole_radius
+    return np.asarray((away < bolts.hole_radius + room) & (z < part.hole_depth + room))
+
+
+def _of_slot(centres: np.ndarray, slot: Slot | None) -> np.ndarray:
+    """The same of a keyway."""
+    if slot is None:
+        return np.zeros(len(centres), bool)
+    x, y, z = centres.T
+    inside = np.minimum(np.minimum(x - slot.floor, slot.half_width - np.abs(y)), z - slot.start)
+    return np.asarray(inside > -IN_CUT * slot.half_width)
 
 
 @dataclass(frozen=True)
 class WholeTurned:
-    """A part with bolt holes, and its torsion solved without them.
+    """A part with holes or a keyway, and its torsion solved without them.
 
-    The holes' material touches the held face and not the driven one: E is then the work of the walls.
-    `coarser` : solved on longer edges at the holes, which tells how far off u₀ is.
+    `coarser` : solved on longer edges at the cuts, which tells how far off u₀ is.
     """
 
     part: Part
@@ -171,12 +196,17 @@ class WholeUnderLobes:
     coarser: SolvedLobes
 
 
-def at_holes(part: Part) -> tuple[Box, float]:
-    """Where in the meridian the holes of a part are, and the length of the first edges there [mm]."""
-    bolts = part.bolts
-    if bolts is None:
-        raise ValueError("the part has no bolt holes")
-    return Box((bolts.inner, bolts.outer), (0.0, part.hole_depth)), 2 * bolts.hole_radius
+def at_cuts(part: Part) -> tuple[Box, ...]:
+    """Where in the meridian the holes and the keyway of a part are, with the length of the first edges there:
+    how wide the cut is, or how deep, if that is less."""
+    found = []
+    if (bolts := part.bolts) is not None:
+        found.append(Box((bolts.inner, bolts.outer), (0.0, part.hole_depth), 2 * bolts.hole_radius))
+    if (slot := part.keyway) is not None:
+        outer = max(r for s in part.meridian.segments for r, _ in (s.start, s.end))
+        deep = min(2 * slot.half_width, outer - slot.floor)
+        found.append(Box((slot.floor, outer), (slot.start, part.length), deep))
+    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -193,6 +223,9 @@ class TurnedWalls:
 def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> TurnedWalls:
     """Of the walls of a mesh of the part's sector.
 
+    The energy in a cut is the work that is done on its boundary: on the walls alone where the rest is free or
+    held still, as of holes. The keyway's is turned there, so the walls' share is told relative to that turn.
+
     Raises
     ------
     MeshingError : a wall leaves the meridian.
@@ -201,7 +234,7 @@ def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> Turn
     psi = walls.places(turn.space).see(turn.psi)
     shear = material.mu * walls.r.ravel() * psi.grad
     pull = walls.pull({R_THETA: shear[0], THETA_Z: shear[1]})
-    turned = walls.r * np.asarray(psi).reshape(walls.r.shape)
+    turned = walls.r * (np.asarray(psi).reshape(walls.r.shape) - walls.of_slot[:, None])
     energy = -float(np.sum(pull[TANGENTIAL] * turned)) * walls.copies
     return TurnedWalls(walls.forces(-pull), energy)
 

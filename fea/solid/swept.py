@@ -161,7 +161,7 @@ def _curved(
     longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
     nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
     nodes[: len(corners)] = corners
-    nodes = straightened(nodes, cells, edges)
+    nodes = straightened(nodes, cells, edges, facets)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[facet_surface]
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)

@@ -1,4 +1,4 @@
-"""Torsion on a solid mesh: all of the part's field, or only what its bolt holes change."""
+"""Torsion on a solid mesh: all of the part's field, or only what its holes and keyway change."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from flexspline.fea.solid.superposition import WholeTurned
 from flexspline.fea.types import NMM_PER_NM, Elastic
 
 LEAST_LEFT = 0.1
-"""Of K without holes: less is the small difference of two large numbers."""
+"""Of K without cuts: less is the small difference of two large numbers."""
 
 
 class CorrectionError(SolidError):
-    """What the holes change cannot be told, or says too little of K; all of the field can be solved."""
+    """What the cuts change cannot be told, or says too little of K; all of the field can be solved."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +68,14 @@ class FullTorsion:
 
 @dataclass
 class TorsionCorrection:
-    """What the bolt holes change of it (`fea.solid.superposition`).
+    """What the part's `cuts`, its holes and keyway, change of it (`fea.solid.superposition`).
 
-    `wholes` : the part without its holes, solved better and better, one for each mesh, at least one.
+    `wholes` : the part without them, solved better and better, one for each mesh, at least one.
     """
 
     material: Elastic
     driven: str
+    cuts: str
     wholes: Iterator[WholeTurned]
     scales: ErrorScales = CORRECTION_SCALES
     _whole: WholeTurned | None = None
@@ -97,7 +98,7 @@ class TorsionCorrection:
         known = whole.solved.stiffness
         K = known.K_Nm_per_rad - correction.lost / NMM_PER_NM
         if LEAST_LEFT * known.K_Nm_per_rad > K:
-            raise CorrectionError("what the holes change leaves too little of K")
+            raise CorrectionError(f"the effect of the {self.cuts} leaves too little of K")
         error = energy_error(correction.mesh, correction.displacement, self.material)
         estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
         doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
@@ -107,4 +108,4 @@ class TorsionCorrection:
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
-        return by_correction(error)
+        return by_correction(self.cuts, error)

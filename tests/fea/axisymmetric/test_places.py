@@ -14,12 +14,12 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.geometry.load import load_design
 
 CUP = load_design(EXAMPLES / "xb1-40.toml").part("flexspline")
-AT_HOLES = Box((5.25, 7.75), (0.0, 2.0))
+AT_HOLES = Box((5.25, 7.75), (0.0, 2.0), longest_mm=0.5)
 
 
 @pytest.fixture(scope="module")
 def mesh() -> MeridianMesh:
-    return refined_within(triangulate(CUP.without_holes().meridian), AT_HOLES, 0.5)
+    return refined_within(triangulate(CUP.without_holes().meridian), [AT_HOLES])
 
 
 def test_a_quadratic_field_is_seen_exactly_with_its_slopes(mesh: MeridianMesh) -> None:

@@ -1,8 +1,8 @@
-"""A figure solved again and again, on meridian meshes that become finer and finer in a box."""
+"""A figure solved again and again, on meridian meshes that become finer and finer in boxes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 from typing import Protocol
 
@@ -20,15 +20,14 @@ class OnMeridian(Refinable[MeridianMesh], Protocol):
     mesh: MeridianMesh
 
 
-def finer_in_box(
+def finer_in_boxes(
     figure: OnMeridian,
     mesh: MeridianMesh,
-    box: Box,
-    longest_mm: float,
+    boxes: Sequence[Box],
     deadline: Deadline,
     most_triangles: int,
 ) -> Iterator[Shortfall]:
-    """`refine` from a mesh with edges of `longest_mm` at most in the box, then of half as much, and so on.
+    """`refine` from a mesh with edges as the boxes ask, then with edges half as long there, and so on.
 
     The shortfall after each, until a third mesh, or a later one, would begin with more than `most_triangles`.
 
@@ -37,8 +36,8 @@ def finer_in_box(
     OutOfTimeError, and what `figure.solve` raises.
     """
     for number in count():
-        mesh = refined_within(mesh, box, longest_mm)
+        mesh = refined_within(mesh, boxes, 0.5**number)
         if number > 1 and mesh.elements > most_triangles:
             return
         yield refine(figure, mesh, deadline, MOST_TRIANGLES)
-        mesh, longest_mm = figure.mesh, longest_mm / 2
+        mesh = figure.mesh
