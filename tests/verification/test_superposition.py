@@ -190,9 +190,9 @@ def test_the_doubt_is_how_far_a_coarser_body_without_holes_moves_it(case: str) -
     _, fine = torsion_and_correction(model, part.driven, WholeTurned(part, whole.solved, far))
     _, coarse = torsion_and_correction(model, part.driven, WholeTurned(part, far, far))
     assert coarse.doubt == 0
-    moved = abs(coarse.lost - fine.lost)
-    assert moved < 0.06 * fine.lost
-    assert fine.doubt == pytest.approx(moved, rel=0.06, abs=1e-9 * fine.lost)
+    moved, lost = abs(coarse.lost - fine.lost), fine.lost
+    # of a keyway at the end of the grip, where u₀ is singular, the second order is 2 % at once
+    assert fine.doubt == pytest.approx(moved, rel=0.03, abs=10 * moved**2 / lost + 1e-9 * lost)
     _, usual = solved(case, 1.0)
     assert usual.doubt <= fine.doubt
 
@@ -236,28 +236,31 @@ def test_the_walls_are_those_of_the_cuts(case: str) -> None:
     assert np.abs(walls.area[TANGENTIAL]).max() > 0
     x, y = walls.r * np.cos(walls.phi), walls.r * np.sin(walls.phi)
     area = np.linalg.norm(walls.area, axis=0)
+    normal = np.einsum("ckq,cdkq->dkq", walls.area, walls.axes) / area
     copies = 360 / mesh.sector_deg
-    left = ~np.broadcast_to(walls.of_slot[:, None], area.shape)
+    slots = np.broadcast_to(walls.of_slot[:, None], area.shape)
     if (bolts := part.bolts) is not None:
+        wall, floor = (~slots & (np.abs(normal[2]) < 0.5), ~slots & (np.abs(normal[2]) > 0.5))
         away = np.min([np.hypot(x - a, y - b) for a, b in bolts.centres], axis=0)
-        wall = left & (np.abs(away / bolts.hole_radius - 1) < 2e-3)  # parabolas for arcs
-        floor = left & ~wall
+        assert away[wall] == pytest.approx(bolts.hole_radius, rel=2e-3)  # parabolas for arcs
         assert walls.z[floor] == pytest.approx(part.hole_depth)
         sizes = 2 * np.pi * bolts.hole_radius * part.hole_depth, np.pi * bolts.hole_radius**2
         for mine, size in zip((wall, floor), sizes, strict=True):
             if mine.any():  # the floor of a blind hole
                 found = float(area[mine].sum()) * copies
-                assert found == pytest.approx(bolts.count * size, rel=1e-3)
+                assert found == pytest.approx(bolts.count * size, rel=2e-3)
         # the normal leaves the material: into the hole, so on the far side of it back to the axis
         outer = wall & (walls.r > bolts.radius + bolts.hole_radius / 2)
         assert (walls.area[0][outer] < 0).all()
     if (slot := part.keyway) is not None:
-        normal = np.abs(np.einsum("ckq,cdkq->dkq", walls.area, walls.axes)) / area
-        found = [float(area[~left & (along > 0.999)].sum()) * copies for along in normal]
+        # out of the material: from the floor outwards, to the free end, and from the side at y > 0 back
+        planes = (normal[0], -normal[1], normal[2])
+        areas = [float(area[slots & (along > 0.999)].sum()) * copies for along in planes]
         r = max(s.start[0] for s in part.meridian.segments if s.start[1] > slot.start)
         side, end = sqrt(r**2 - slot.half_width**2) - slot.floor, slot.section_mm2(r)
         sizes = 2 * slot.half_width * slot.length, 2 * side * slot.length, end
-        assert found == pytest.approx(sizes, rel=1e-3)
+        assert areas == pytest.approx(sizes, rel=1e-3)
+    assert (slots.any(), (~slots).any()) == (part.keyway is not None, part.bolts is not None)
 
 
 def test_a_fillet_that_a_slot_s_plane_would_cross_far_from_it_is_no_wall() -> None:
