@@ -23,7 +23,7 @@ from flexspline.pipeline.ellipse_peak import (
 from flexspline.pipeline.figure_tasks import FigureTasks
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_torsion import TwistedPart
@@ -173,10 +173,11 @@ def torque_field(model: PartModel) -> SolidField:
     design = model.context.design
     torque = design.load.torque_Nm
     twisted = twisted_part(model)
+    turned = turned_field(model, twisted)
     with model.context.progress.stage(f"stress of the {model.name} under torque"):
         solved = stress_field(
             twisted.meshed.mesh,
-            twisted.displacement * (torque / twisted.stiffness.levels[-1].K_Nm_per_rad),
+            turned.displacement * (torque / turned.K_Nm_per_rad),
             model.material,
             f"{model.name} under T_L = {torque:g} N·m",
             sharp_edges(model, twisted.meshed),

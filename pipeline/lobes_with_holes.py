@@ -33,7 +33,9 @@ def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
     ------
     ComputationError, MemoryError
     """
-    field = LobeCorrection(flexspline.material, supported, _wholes(flexspline, supported))
+    field = LobeCorrection(
+        flexspline.material, supported, flexspline.tolerance, _wholes(flexspline, supported)
+    )
     return on_meshes("lobes with holes", flexspline, field, _meshes(flexspline))
 
 

@@ -7,6 +7,8 @@ from math import inf
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.load_cases import torsion
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.drawn_teeth import of_toothed
@@ -17,6 +19,7 @@ from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_torsion import (
     RIM_ELEMENTS,
     SECOND_SECONDS,
+    TurnedField,
     TwistedPart,
     copies_in_rim,
     slow_to_confirm,
@@ -107,6 +110,21 @@ def twisted_part(model: PartModel) -> TwistedPart:
 
     key = {**model.torsion_key, "one_mesh": one_mesh}
     return model.context.cache.get("torsion", key, make, lambda made: is_lasting(made.stiffness))[0]
+
+
+def turned_field(model: PartModel, twisted: TwistedPart) -> TurnedField:
+    """Of that part's mesh, solved now if K did not need it; errors as `part_stiffness`."""
+    if twisted.turned is not None:
+        return twisted.turned
+
+    def make() -> TurnedField:
+        solid = Model.of(twisted.meshed.mesh, model.material)
+        return TurnedField.of(torsion(solid, model.part.driven))
+
+    last = twisted.stiffness.levels[-1]
+    key = {**model.torsion_key, "elements": last.elements, "K_Nm_per_rad": last.K_Nm_per_rad}
+    with model.context.progress.stage(f"torsion of the {model.name}"):
+        return model.context.cache.get("turned", key, make)[0]
 
 
 def rim_mesh(model: PartModel) -> MeshedPart:

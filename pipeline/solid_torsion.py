@@ -19,6 +19,7 @@ from flexspline.fea.errors import (
 from flexspline.fea.scaled_estimate import ERROR_RATIOS
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
+from flexspline.fea.solid.load_cases import SolvedStiffness
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.superposition import WholeTurned, at_cuts
@@ -48,9 +49,9 @@ mesh is made only where it is expected to meet the tolerance. A first mesh is fo
 cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186 s of the
 processor; in 275 s with FIRST_ELEMENTS of 20 000 and a third mesh of any, also 29. One known to ± 4.9 % by
 15 000 elements, where 0.1 % was asked, was known to ± 3.6 % by 48 000, 23 s later."""
-LAYERED_ALONE = 2 * LAYERED_ELEMENTS
-"""The number beyond which none follows the first: after one of 106 804 the second took 13 s to make, and it
-could not be solved in the time that was left."""
+LAYERED_ALONE = LAYERED_ELEMENTS
+"""The number beyond which a second mesh is made only where it is expected to meet the tolerance: after
+106 804 it took 13 s to make, after 55 022 4.6 s, and could not be solved in the time that was left."""
 ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[0])
 """Elements that bounds 1/x as wide take, over those there are: x to this power."""
 UNLAYERED_LAST = 40_000
@@ -77,8 +78,21 @@ the bounds of all its K were there. Where there is no other K the mesher has all
 
 
 @dataclass(frozen=True)
+class TurnedField:
+    """A mesh's displacement (n, 3) [mm] for a turn of 1 rad, and K of this field."""
+
+    displacement: np.ndarray
+    K_Nm_per_rad: float
+
+    @classmethod
+    def of(cls, solved: SolvedStiffness) -> TurnedField:
+        """Of a solution."""
+        return cls(solved.displacement, solved.K_energy)
+
+
+@dataclass(frozen=True)
 class TwistedPart:
-    """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
+    """A solid part's stiffness; its field for a turn of 1 rad, where K needed it (else `turned_field`).
 
     `rim` is the finest of its meshes that, unfolded for the lobe cases, keeps within RIM_ELEMENTS.
     `without_fillets`: a shaft's meshes have sharp corners in place of its fillets.
@@ -86,7 +100,7 @@ class TwistedPart:
 
     stiffness: Stiffness
     meshed: MeshedPart
-    displacement: np.ndarray
+    turned: TurnedField | None
     rim: MeshedPart
     without_fillets: bool = False
 
@@ -240,4 +254,5 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
     meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]
     rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
-    return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])
+    turned = None if found.turned is None else TurnedField.of(found.turned)
+    return TwistedPart(found.stiffness, meshed[-1], turned, meshed[rim])

@@ -16,7 +16,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
 from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.ellipse_peak import ellipse_field
-from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.temporary_files import scratch_folder, temporary_folder
@@ -88,7 +88,7 @@ def _write_deck(part: PartModel, folder: Path) -> Path:
     twisted = twisted_part(part)
     path = folder / f"{part.name}_torsion.inp"
     with part.context.progress.stage(f"deck of the {part.name}"):
-        on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad
+        on_this_mesh = turned_field(part, twisted).K_Nm_per_rad
         title = f"{part.context.design.name}: {part.name} under torsion"
         mesh, driven = twisted.meshed.mesh, part.part.driven
         text = torsion_deck(mesh, part.material, driven, on_this_mesh, title)

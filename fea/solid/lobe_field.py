@@ -22,6 +22,10 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeUnderLobes
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel
 
+WAVES_SHARE = 0.05
+"""Of the tolerance: what waves may add to the bounds that are not solved. On a hat with nine holes one of
+five is left, and 1.7 of 6.3 s of the processor."""
+
 
 class LobeSolver(FieldSolver[MeshResult], Protocol):
     """Under the load; `supported`: the seat may not move radially."""
@@ -52,12 +56,13 @@ class FullLobes:
 class LobeCorrection:
     """What the bolt holes change of it (`fea.solid.superposition`).
 
-    `wholes` : the part without its holes under the load, solved better and better, one for each mesh, at
-    least one.
+    `tolerance` : of K, relative. `wholes` : the part without its holes under the load, solved better and
+    better, one for each mesh, at least one.
     """
 
     material: Elastic
     supported: bool
+    tolerance: float
     wholes: Iterator[WholeUnderLobes]
     scales: ErrorScales = CORRECTION_SCALES
     _whole: WholeUnderLobes | None = None
@@ -66,9 +71,11 @@ class LobeCorrection:
         """As `FullLobes.solve`; raises MeshingError, MeshQualityError as `lobe_correction` besides."""
         self._whole = whole = next(self.wholes, self._whole)
         assert whole is not None
-        found, known = lobe_correction(model, self.supported, whole), whole.stiffness
+        known = whole.stiffness
+        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM)
+        found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
         error = energy_error(found.mesh, found.displacement, self.material)
-        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM) + found.lost
+        work += found.lost
         K = TORQUE**2 / work / NMM_PER_NM
         estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
         level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)

@@ -107,6 +107,11 @@ class Supports:
         turned, rested = self._solve((load, at_rest), (1.0, 0.0))
         return turned, rested
 
+    def solve_at_rest(self, load: np.ndarray) -> Solution:
+        """`solve`, with all that is prescribed 0."""
+        (solution,) = self._solve((load,), (0.0,))
+        return solution
+
     def _solve(self, loads: Sequence[np.ndarray], times: Sequence[float]) -> list[Solution]:
         fixed = np.flatnonzero(self.mask.ravel())
         model, value = self._model, self.value.ravel()[fixed]

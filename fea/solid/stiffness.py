@@ -23,7 +23,7 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.load_cases import Solved
+from flexspline.fea.solid.load_cases import SolvedStiffness
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
@@ -73,11 +73,11 @@ class MeshSequence:
 
 @dataclass(frozen=True)
 class RefinedStiffness:
-    """The stiffness, the finest mesh's solution for 1 rad, and all meshes, coarse to fine."""
+    """The stiffness, and all meshes, coarse to fine; `turned`: the finest one's field, if it was solved."""
 
     stiffness: Stiffness
     meshes: tuple[TetMesh, ...]
-    solved: Solved
+    turned: SolvedStiffness | None
 
 
 def solid_stiffness(
@@ -106,7 +106,7 @@ def solid_stiffness(
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {percent(found.half)} stays, {shortfall}")
     answer = found.answer(symmetry, shortfall)
-    return RefinedStiffness(answer, tuple(found.meshes), found.solved)
+    return RefinedStiffness(answer, tuple(found.meshes), found.turned)
 
 
 class _SolidTorsion:
@@ -148,7 +148,7 @@ class _SolidTorsion:
         try:
             found = self._field.solve(model)
             estimate = self.estimate.with_mesh(found)
-            own = found.level.K_Nm_per_rad * (1 + MESH_LIMIT)
+            own = found.turned.K_energy * (1 + MESH_LIMIT) if found.turned else inf
             if estimate.at_given_angle().lower > own:
                 raise CorrectionError("the correction leaves more of K than all of the field")
         except CorrectionError as fault:
@@ -157,7 +157,7 @@ class _SolidTorsion:
             found = full.solve(model)
             estimate = _of(full, model.mesh).with_mesh(found)
             self._field = full
-        self.estimate, self.solved, self._errors = estimate, found.solved, found.errors
+        self.estimate, self.turned, self._errors = estimate, found.turned, found.errors
 
     @property
     def half(self) -> float:

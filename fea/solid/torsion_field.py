@@ -19,11 +19,16 @@ from flexspline.fea.solid.field_solver import (
     by_correction,
     level_of,
 )
-from flexspline.fea.solid.load_cases import Solved, torsion, torsion_and_correction
+from flexspline.fea.solid.load_cases import (
+    SolvedStiffness,
+    torsion,
+    torsion_and_correction,
+    torsion_correction,
+)
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeTurned
-from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel
 
 LEAST_LEFT = 0.1
 """Of K without cuts: less is the small difference of two large numbers."""
@@ -35,10 +40,10 @@ class CorrectionError(SolidError):
 
 @dataclass(frozen=True)
 class TurnedMesh(MeshResult):
-    """Of torsion, with all of the part's field for a turn of 1 rad and the errors (m,) of its elements."""
+    """Of torsion, with the errors (m,) of its elements; `turned`: all of the field, if it was solved too."""
 
-    solved: Solved = field(kw_only=True)
     errors: np.ndarray = field(kw_only=True)
+    turned: SolvedStiffness | None = field(default=None, kw_only=True)
 
 
 class TorsionSolver(FieldSolver[TurnedMesh], Protocol):
@@ -59,7 +64,7 @@ class FullTorsion:
         """On one mesh; raises SolidError, MemoryError."""
         solved = torsion(model, self.driven)
         error = energy_error(model.mesh, solved.displacement, self.material)
-        return TurnedMesh(level_of(solved), error.relative, solved=solved, errors=error.error)
+        return TurnedMesh(level_of(solved), error.relative, errors=error.error, turned=solved)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
@@ -70,7 +75,9 @@ class FullTorsion:
 class TorsionCorrection:
     """What the part's `cuts`, its holes and keyway, change of it (`fea.solid.superposition`).
 
-    `wholes` : the part without them, solved better and better, one for each mesh, at least one.
+    All of the field is solved on the first mesh only: it may contradict the correction. On each of the meshes
+    after it, it would take as long again. `wholes` : the part without them, solved better and better, one for
+    each mesh, at least one.
     """
 
     material: Elastic
@@ -85,14 +92,18 @@ class TorsionCorrection:
 
         Raises
         ------
-        CorrectionError : the mesh has no walls, or one leaves the meridian; K is too small a difference, or
-            above that of the whole field, which it never is.
+        CorrectionError : the mesh has no walls, or one leaves the meridian; K is too small a difference.
         SolidError, MemoryError : of the solve.
         """
+        first = self._whole is None
         self._whole = whole = next(self.wholes, self._whole)
         assert whole is not None
+        turned = None
         try:
-            solved, correction = torsion_and_correction(model, self.driven, whole)
+            if first:
+                turned, correction = torsion_and_correction(model, self.driven, whole)
+            else:
+                correction = torsion_correction(model, self.driven, whole)
         except (MeshingError, MeshQualityError) as fault:
             raise CorrectionError(str(fault)) from fault
         known = whole.solved.stiffness
@@ -102,8 +113,14 @@ class TorsionCorrection:
         error = energy_error(correction.mesh, correction.displacement, self.material)
         estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
         doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
+        mesh = model.mesh
+        level = (
+            MeshLevel(mesh.shortest_edge_mm, mesh.elements, correction.unknowns, K)
+            if turned is None
+            else level_of(turned)
+        )
         return TurnedMesh(
-            level_of(solved), float(estimate / K), K, doubt / K, solved=solved, errors=error.error
+            level, float(estimate / K), K, doubt / K, errors=error.error, turned=turned
         )
 
     def method(self, error: str) -> str:

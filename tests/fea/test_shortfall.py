@@ -136,7 +136,7 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
         said.append,
     )
     assert len(found.meshes) == len(found.stiffness.levels)
-    assert len(found.solved.displacement) == len(found.meshes[-1].nodes)
+    assert len(found.turned.displacement) == len(found.meshes[-1].nodes)
     return found.stiffness, said
 
 
