@@ -40,7 +40,7 @@ on cups, hats and shafts, swept and not, against two-sided bounds. `by_error`: 4
 bounds from that missed K by 0.05 %."""
 CORRECTION_SCALES = ErrorScales(usual=3.5, in_layers=3.5, believed=(3.5, 6.5), by_error=(3.5, 6.5))
 """Of what cuts change. Holes: 1.5 to 3.2 by the first two meshes of 22 random cups, hats and shafts, 5.1 and
-6.3 on two shafts. Keyways: 2.0 to 4.8 on the first meshes of twelve random shafts, 6.5 on one more. Two meshes
+6.3 on two shafts. Keyways: 2.0 to 4.8 on the first meshes of twelve random shafts, 6.5 on one. Two meshes
 may tell too little: of 13 holes 45 diameters deep they told 2.5, and the third, with more elements about the
 holes, fell by four times as much. They are believed from the usual on."""
 
