@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import hypot
 from typing import Any
 
 from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.outline import Meridian, SAME_mm
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.shaft_shape import Shaft, Slot
 from flexspline.geometry.shapes import Flexspline
@@ -78,6 +79,18 @@ class Part:
         """What makes it no body of revolution, in words; empty where it is one."""
         holes, keyway = self.bolts is not None, self.keyway is not None
         return " and ".join(["holes"] * holes + ["keyway"] * keyway)
+
+    @property
+    def cuts_meet(self) -> bool:
+        """Whether a bolt hole opens into the keyway, or touches it."""
+        bolts, slot = self.bolts, self.keyway
+        if bolts is None or slot is None or self.hole_depth < slot.start - SAME_mm:
+            return False
+        away = (
+            hypot(max(slot.floor - x, 0.0), max(abs(y) - slot.half_width, 0.0))
+            for x, y in bolts.centres
+        )
+        return min(away) < bolts.hole_radius + SAME_mm
 
     def without_holes(self) -> Part:
         """The body of revolution that it would be: no bolt holes, no keyway."""

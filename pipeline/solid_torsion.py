@@ -186,10 +186,12 @@ def twisted(
 def _cuts_alone(model: PartModel, tolerance: float) -> bool:
     """Whether the meshes need only tell what holes and keyway change of the part without them.
 
-    Not where no error is asked for, or a model is chosen by name.
+    Not where no error is asked for, or a model is chosen by name; nor where hole and keyway are one cut, from
+    the held face to the driven one: the walls tell the energy of cuts that touch one of these.
     """
     by_name = model.context.design.solver.model != "auto"
-    return not (tolerance == inf or by_name or model.part.is_revolved)
+    part = model.part
+    return not (tolerance == inf or by_name or part.is_revolved or part.cuts_meet)
 
 
 def _field(model: PartModel, tolerance: float) -> TorsionSolver:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from example_files import EXAMPLES
 from shaft_of import shaft_of
 
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
+from flexspline.geometry.shaft_shape import Shaft
 
 
 def test_a_flexsplines_is_its_wall() -> None:
@@ -57,3 +60,32 @@ def test_a_shaft_without_a_material_has_the_flexsplines() -> None:
     materials = design.material.model_copy(update={"shaft": None})
     alone = design.model_copy(update={"material": materials})
     assert alone.part("shaft").material == design.material.flexspline
+
+
+@pytest.mark.parametrize(
+    ("slot_mm", "circle_mm", "hole_mm", "count", "meet"),
+    [
+        (25.0, 12.0, 2.0, 1, True),  # the hole is in the slot
+        (20.0, 12.0, 2.0, 1, True),  # its floor is the slot's end
+        (19.9, 12.0, 2.0, 1, False),  # 0.1 mm of material between them
+        (25.0, 8.0, 1.9, 1, False),  # below the slot's floor: 4 + 0.95 mm
+        (25.0, 8.0, 2.0, 1, True),  # touching it
+        (25.0, 8.0, 1.9, 7, False),  # the others are farther from the slot
+    ],
+)
+def test_holes_and_keyway_that_are_one_cut(
+    slot_mm: float, circle_mm: float, hole_mm: float, count: int, meet: bool
+) -> None:
+    """A shaft of 40 mm in two pieces; the keyway's floor is at 5 mm, its width 5; holes are 20 mm deep."""
+    bolts = {
+        "bolt_count": count,
+        "bolt_circle_diameter_mm": circle_mm,
+        "bolt_hole_diameter_mm": hole_mm,
+    }
+    piece = {"length_mm": 20.0, "outer_diameter_mm": 16.0, "inner_diameter_mm": 0.0}
+    part = load_design(EXAMPLES / "keyed-shaft.toml").part("shaft")
+    shape = part.shape.model_dump() | bolts | {"segment": (piece, piece)}
+    shape["keyway"]["length_mm"] = slot_mm
+    assert replace(part, shape=Shaft.model_validate(shape)).cuts_meet is meet
+    del shape["keyway"]
+    assert not replace(part, shape=Shaft.model_validate(shape)).cuts_meet

@@ -56,10 +56,13 @@ def test_one_that_would_end_in_time_is() -> None:
     assert len(stiffness(140.0).levels) > 1
 
 
-def test_one_with_much_shorter_edges_is_expected_to_take_longer() -> None:
-    """Where an eighth of the error is wanted the next mesh's edges are a quarter: five times 25 s."""
-    assert len(stiffness(140.0, FINE / 6).levels) == 1
-    assert len(stiffness(140.0).levels) > 1
+def test_where_there_is_no_time_for_the_wanted_mesh_a_coarser_one_is_made() -> None:
+    """A sixth of the error is wanted: the next mesh's edges are a quarter, 120 s after the first 25, or 0.4
+    of its edges, 75 s."""
+    cut, whole = stiffness(140.0, FINE / 6), stiffness(1000.0, FINE / 6)
+    assert cut.levels[1].elements < whole.levels[1].elements
+    assert cut.levels[0] == whole.levels[0]
+    assert len(stiffness(74.0, FINE / 6).levels) == 1  # 50 s for the mildest
 
 
 def test_a_first_mesh_that_comes_late_is_solved() -> None:
