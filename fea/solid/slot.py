@@ -77,6 +77,11 @@ class SlottedTube:
             Segment(inside, (self.outer, self.slot.start)),
         )
 
+    @property
+    def land(self) -> float:
+        """Material between the floor's middle and the bore, or the axis [mm]."""
+        return self.slot.floor - self.inner
+
     def grading(self, asked: Grading) -> Grading:
         """The same wish of an error, for a revolved mesh of many steps."""
         return Grading(NEAR_RATIO * asked.near, FAR_RATIO * asked.far, GROWTH_RATIO * asked.growth)
