@@ -54,8 +54,8 @@ LAYERED_ALONE = LAYERED_ELEMENTS
 106 804 it took 13 s to make, after 55 022 4.6 s, and could not be solved in the time that was left."""
 ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[1])
 """Elements that bounds 1/x as wide take, over those there are: x to this power, where they fall slowly. Three
-shafts whose bounds fell to 0.63 to 0.67 of themselves by twice the elements missed their tolerance with one mesh
-more too, which took 4 to 7 s."""
+shafts whose bounds fell to 0.63 to 0.67 of themselves by twice the elements missed their tolerance with one
+mesh more too, which took 4 to 7 s."""
 UNLAYERED_LAST = 40_000
 """That number for any other mesh. A thick hat with sixteen holes, 0.1 % asked: ± 0.60, 0.13 and 0.07 % on
 16 704, 36 843 and 66 024 elements, for 3.0, 7.3 and 14.6 s of the processor."""
