@@ -30,6 +30,8 @@ from flexspline.results.streams import private_stdout
 SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
 STOPPED = "drawing was stopped"
+KILLED = "SIGKILL"
+"""No driver ends a process so."""
 _VTK_LOG = re.compile(r"^(\x1b\[[0-9;]*m)*[\d-]+ [\d:.]+ \([^)]*\) \[[^]]*\]|\x1b\[[0-9;]*m")
 """Colours, time and thread before VTK's words: with them no two reasons are alike."""
 
@@ -154,10 +156,12 @@ class DrawingProcess:
             (f", {one_line(w, 120)}" for s in reversed(said) if (w := _VTK_LOG.sub("", s).strip())),
             "",
         )
-        return (
-            f"the process that draws ended ({how}{last}), as missing or broken graphics drivers make it; "
-            f"{ADVICE}"
-        )
+        ended = f"the process that draws ended ({how}{last})"
+        if how == KILLED:
+            return (
+                f"{ended}, as a system without memory left makes it; free memory or draw elsewhere"
+            )
+        return f"{ended}, as missing or broken graphics drivers make it; {ADVICE}"
 
     def _end(self) -> None:
         process, self._process = self._process, None

@@ -18,6 +18,11 @@ def whose(path, values):
     path.write_text(str(id(values)))
 
 
+def killed(path):
+    """As the system does that has no memory left."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 def crashing(path, noted):
     with open(noted, "a", encoding="utf-8") as calls:
         calls.write("called\n")

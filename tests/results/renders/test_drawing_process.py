@@ -50,6 +50,16 @@ def test_a_crash_is_one_line_and_other_pictures_still_come(tmp_path: Path) -> No
     assert noted.read_text() == "called\n"  # what crashed once is not tried again
 
 
+def test_a_process_that_the_system_killed_is_no_fault_of_a_driver() -> None:
+    with (
+        DrawingProcess() as process,
+        pytest.raises(NotDrawnError, match="SIGKILL.*memory") as failure,
+    ):
+        process.draw(failing_drawings.killed)
+    assert "driver" not in str(failure.value)
+    assert ADVICE not in str(failure.value)
+
+
 def test_an_error_names_itself_and_ends_nothing() -> None:
     with DrawingProcess() as process:
         with pytest.raises(NotDrawnError, match=r"KeyError: .scalars.*another mesh") as failure:
