@@ -53,7 +53,7 @@ def test_a_crash_is_one_line_and_other_pictures_still_come(tmp_path: Path) -> No
 def test_a_process_that_the_system_killed_is_no_fault_of_a_driver() -> None:
     with (
         DrawingProcess() as process,
-        pytest.raises(NotDrawnError, match="SIGKILL.*memory") as failure,
+        pytest.raises(NotDrawnError, match=r"SIGKILL.*memory") as failure,
     ):
         process.draw(failing_drawings.killed)
     assert "driver" not in str(failure.value)
