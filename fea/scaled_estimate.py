@@ -38,22 +38,19 @@ class MeshResult:
 
     Attributes
     ----------
-    level : the mesh, with its own K.
-    error : estimated, of the K that it gives, over that.
-    better_Nm_per_rad : that K, where it is a better one than the mesh's own.
+    level : the mesh, with the K that it gives.
+    error : estimated, of that K, over it.
     doubt : of K, over it, to both sides: what no finer mesh takes away.
     """
 
     level: MeshLevel
     error: float
-    better_Nm_per_rad: float | None = None
     doubt: float = 0.0
 
     @property
     def K_Nm_per_rad(self) -> float:
         """That it gives."""
-        better = self.better_Nm_per_rad
-        return self.level.K_Nm_per_rad if better is None else better
+        return self.level.K_Nm_per_rad
 
 
 @dataclass

@@ -25,7 +25,7 @@ from flexspline.fea.solid.superposition import (
 )
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
-from flexspline.fea.types import NMM_PER_NM, TetMesh
+from flexspline.fea.types import NMM_PER_NM, MeshLevel, TetMesh
 
 BALANCE_LIMIT = 1e-6
 """Energy and reaction give the same K to this; measured 1e-12 to 1e-9."""
@@ -81,15 +81,32 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
 class SolvedCorrection:
     """v_h of `fea.solid.superposition`, (n, 3) Cartesian mm.
 
-    `lost` : E + a(v_h, v_h) of the whole part [N·mm]. `doubt` : how far that moves, to first order, from u₀
-    on the coarser mesh at the holes. `unknowns` : of all waves together.
+    Attributes
+    ----------
+    lost : E + a(v_h, v_h) of the whole part [N·mm].
+    lost_by_work : the same with the work of the forces in place of the energy.
+    doubt : how far that moves, to first order, from u₀ on the coarser mesh at the cuts.
+    unknowns : of all waves together. residual : relative, of the worst solve.
     """
 
     mesh: TetMesh
     displacement: np.ndarray
     lost: float
+    lost_by_work: float
     doubt: float
     unknowns: int
+    residual: float
+
+    def level(self, K_Nm_per_rad: float, check_Nm_per_rad: float) -> MeshLevel:
+        """The mesh, with the K that it gives and the same by the work."""
+        return MeshLevel(
+            self.mesh.shortest_edge_mm,
+            self.mesh.elements,
+            self.unknowns,
+            K_Nm_per_rad,
+            check_Nm_per_rad,
+            self.residual,
+        )
 
 
 def torsion_and_correction(
@@ -127,9 +144,14 @@ def _correction(
     v = corrected.unknowns
     lost = walls.energy + float(v @ (model.matrix @ v)) * model.copies
     displacement = model.frames.to_cartesian(v.reshape(-1, 3))
-    work = float(np.sum((walls.forces - before.forces) * displacement)) * model.copies
-    doubt = abs(walls.energy - before.energy + 2 * work)
-    return SolvedCorrection(model.mesh, displacement, lost, doubt, corrected.free_count)
+    work, before_s = (
+        float(np.sum(w.forces * displacement)) * model.copies for w in (walls, before)
+    )
+    doubt = abs(walls.energy - before.energy + 2 * (work - before_s))
+    return SolvedCorrection(
+        model.mesh, displacement, lost, walls.energy + work, doubt,
+        corrected.free_count, corrected.residual,
+    )  # fmt: skip
 
 
 def _turned(model: Model, driven: str) -> Supports:
@@ -211,8 +233,11 @@ def lobe_correction(
         work = float(np.sum((walls.forces - before.forces).conjugate() * v).real)
         moved += walls.energy - before.energy + 2 * work * walls.wave.times * model.copies
     solved = _of_waves(model, found, "antisymmetric")
-    doubt = abs(moved) + left_out
-    return SolvedCorrection(solved.mesh, solved.displacement, lost, doubt, solved.dofs)
+    by_work = lost + sum(w.work - w.stored for w in found)
+    return SolvedCorrection(
+        solved.mesh, solved.displacement, lost, by_work, abs(moved) + left_out,
+        solved.dofs, solved.residual,
+    )  # fmt: skip
 
 
 def _under_lobes(model: Model, wave: CyclicWave, supported: bool) -> WaveSupports:

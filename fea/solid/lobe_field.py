@@ -20,7 +20,7 @@ from flexspline.fea.solid.load_cases import lobe_correction, lobes
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeUnderLobes
-from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel
+from flexspline.fea.types import NMM_PER_NM, Elastic
 
 WAVES_SHARE = 0.05
 """Of the tolerance: what waves may add to the bounds that are not solved. On a hat with nine holes one of
@@ -75,10 +75,12 @@ class LobeCorrection:
         work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM)
         found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
         error = energy_error(found.mesh, found.displacement, self.material)
+        K, check = (
+            TORQUE**2 / (work + lost) / NMM_PER_NM for lost in (found.lost, found.lost_by_work)
+        )
         work += found.lost
-        K = TORQUE**2 / work / NMM_PER_NM
         estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
-        level = MeshLevel(found.mesh.shortest_edge_mm, found.mesh.elements, found.unknowns, K)
+        level = found.level(K, check)
         doubt = known.half_width + found.doubt / work
         return MeshResult(level, float(estimate), doubt=doubt)
 

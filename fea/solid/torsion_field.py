@@ -28,7 +28,7 @@ from flexspline.fea.solid.load_cases import (
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeTurned
-from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel
+from flexspline.fea.types import NMM_PER_NM, Elastic
 
 LEAST_LEFT = 0.1
 """Of K without cuts: less is the small difference of two large numbers."""
@@ -107,21 +107,17 @@ class TorsionCorrection:
         except (MeshingError, MeshQualityError) as fault:
             raise CorrectionError(str(fault)) from fault
         known = whole.solved.stiffness
-        K = known.K_Nm_per_rad - correction.lost / NMM_PER_NM
+        K, check = (
+            known.K_Nm_per_rad - lost / NMM_PER_NM
+            for lost in (correction.lost, correction.lost_by_work)
+        )
         if LEAST_LEFT * known.K_Nm_per_rad > K:
             raise CorrectionError(f"the effect of the {self.cuts} leaves too little of K")
         error = energy_error(correction.mesh, correction.displacement, self.material)
         estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
         doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
-        mesh = model.mesh
-        level = (
-            MeshLevel(mesh.shortest_edge_mm, mesh.elements, correction.unknowns, K)
-            if turned is None
-            else level_of(turned)
-        )
-        return TurnedMesh(
-            level, float(estimate / K), K, doubt / K, errors=error.error, turned=turned
-        )
+        level = correction.level(K, check)
+        return TurnedMesh(level, float(estimate / K), doubt / K, errors=error.error, turned=turned)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""

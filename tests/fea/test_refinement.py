@@ -144,9 +144,8 @@ def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected:
 def test_what_no_mesh_takes_away_is_added_to_both_ends() -> None:
     """Of the last mesh: K₀ and its field are solved better for each."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    own = mesh_of(100.0, 0.01)
-    found.add(replace(own, better_Nm_per_rad=90.0, doubt=0.5))
-    found.add(replace(own, better_Nm_per_rad=90.0, doubt=0.02))
+    found.add(replace(mesh_of(90.0, 0.01), doubt=0.5))
+    found.add(replace(mesh_of(90.0, 0.01), doubt=0.02))
     none = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
     for _ in range(2):
         none.add(mesh_of(90.0, 0.01))

@@ -46,7 +46,9 @@ def test_a_shaft_is_known_better_by_the_same_mesh(design: Design, suite_cache: P
     whole = of_all_the_field(suite_cache, design)
     assert ALONE in found.method
     assert ALONE not in whole.method
-    assert found.levels[0].K_Nm_per_rad == pytest.approx(whole.levels[0].K_Nm_per_rad, rel=1e-6)
+    assert found.levels[0].elements == whole.levels[0].elements
+    first = found.levels[0]
+    assert first.K_check_Nm_per_rad == pytest.approx(first.K_Nm_per_rad, rel=1e-6)  # by the work
     assert found.half_width < whole.half_width / 3
     assert whole.lower_Nm_per_rad < found.lower_Nm_per_rad
     assert found.upper_Nm_per_rad < whole.upper_Nm_per_rad
