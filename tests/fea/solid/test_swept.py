@@ -426,3 +426,23 @@ def test_a_land_that_straight_edges_make_thicker_is_refused() -> None:
     bore = (np.abs(r[:, :3] - 9.0) < 1e-6).all(axis=1)
     assert bore.any()
     assert np.abs(r[bore] - 9.0).max() < 0.05 * 0.05
+
+
+def test_edges_within_the_part_are_straightened_before_those_of_its_surface() -> None:
+    """For elements beside a narrow bore 400 edges of the surface were straight: its K was below the part's."""
+    stepped = shaft_of(
+        [(49.0, 16.0, 1.7), (32.0, 31.4, 1.7), (5.6, 48.0, 1.7), (53.5, 52.0, 1.7)],
+        "[keyway]\nwidth_mm = 16.0\ndepth_mm = 9.0\nlength_mm = 48.0",
+        fillet=0.0,
+    )
+    part = stepped.part("shaft")
+    mesh = swept_mesh(part, 180.0, replace(first_spec(part), grading=Grading(4.33, 10.83, 0.7)))
+    assert mesh is not None
+    places = mesh.nodes[mesh.facets]
+    r = np.hypot(places[..., 0], places[..., 1])
+    for radius in (8.0, 15.7, 24.0, 26.0):
+        on = (np.abs(r[:, :3] - radius) < 1e-6).all(axis=1)
+        on &= np.ptp(places[:, :3, 2], axis=1) > 0
+        assert on.any()
+        straight = np.abs(r[on][:, 3:] - radius) > 1e-4
+        assert straight.mean() < 0.01
