@@ -429,7 +429,7 @@ def test_a_land_that_straight_edges_make_thicker_is_refused() -> None:
 
 
 def test_edges_within_the_part_are_straightened_before_those_of_its_surface() -> None:
-    """For elements beside a narrow bore 400 edges of the surface were straight: its K was below the part's."""
+    """Beside a narrow bore 400 edges of the surface were straight: K of the mesh was below the part's."""
     stepped = shaft_of(
         [(49.0, 16.0, 1.7), (32.0, 31.4, 1.7), (5.6, 48.0, 1.7), (53.5, 52.0, 1.7)],
         "[keyway]\nwidth_mm = 16.0\ndepth_mm = 9.0\nlength_mm = 48.0",
