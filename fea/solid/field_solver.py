@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol, TypeVar
 
+import numpy as np
+
 from flexspline.fea.scaled_estimate import MeshResult
 from flexspline.fea.solid.layer_curving import LayeredMesh
-from flexspline.fea.solid.load_cases import SolvedStiffness
+from flexspline.fea.solid.load_cases import SolvedCorrection
 from flexspline.fea.solid.model import Model
-from flexspline.fea.types import Elastic, MeshLevel, TetMesh
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.types import Elastic, TetMesh
 
 
 class ErrorScales(NamedTuple):
@@ -74,13 +77,7 @@ class FieldSolver(Protocol[Result]):
         """How K is found, by what is said of its estimated error."""
 
 
-def level_of(solved: SolvedStiffness) -> MeshLevel:
-    """What one mesh gave."""
-    return MeshLevel(
-        shortest_edge_mm=solved.mesh.shortest_edge_mm,
-        elements=len(solved.mesh.cells),
-        dofs=solved.dofs,
-        K_Nm_per_rad=solved.K_energy,
-        K_check_Nm_per_rad=solved.K_check,
-        residual=solved.residual,
-    )
+def error_of(correction: SolvedCorrection, material: Elastic) -> tuple[np.ndarray, float]:
+    """Estimated, of a(v_h, v_h): of each element (m,), and of the whole part [N·mm]."""
+    error = energy_error(correction.mesh, correction.displacement, material).error
+    return error, float(error.sum() * 360 / correction.mesh.sector_deg)

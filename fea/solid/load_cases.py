@@ -65,6 +65,18 @@ class SolvedStiffness(Solved):
     K_energy: float
     K_check: float
 
+    @property
+    def level(self) -> MeshLevel:
+        """What this mesh gave."""
+        return MeshLevel(
+            self.mesh.shortest_edge_mm,
+            self.mesh.elements,
+            self.dofs,
+            self.K_energy,
+            self.K_check,
+            self.residual,
+        )
+
 
 def torsion(model: Model, driven: str) -> SolvedStiffness:
     """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.

@@ -14,7 +14,7 @@ from flexspline.fea.solid.field_solver import (
     ErrorScales,
     FieldSolver,
     by_correction,
-    level_of,
+    error_of,
 )
 from flexspline.fea.solid.load_cases import lobe_correction, lobes
 from flexspline.fea.solid.model import Model
@@ -45,7 +45,7 @@ class FullLobes:
         """On a mesh of half a repeat; the level is that of the quarter or half."""
         solved = lobes(model, self.supported)
         error = energy_error(solved.mesh, solved.displacement, self.material)
-        return MeshResult(level_of(solved), error.relative)
+        return MeshResult(solved.level, error.relative)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
@@ -74,15 +74,14 @@ class LobeCorrection:
         known = whole.stiffness
         work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM)
         found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
-        error = energy_error(found.mesh, found.displacement, self.material)
+        _, error = error_of(found, self.material)
         K, check = (
             TORQUE**2 / (work + lost) / NMM_PER_NM for lost in (found.lost, found.lost_by_work)
         )
         work += found.lost
-        estimate = error.error.sum() * 360 / found.mesh.sector_deg / work
         level = found.level(K, check)
         doubt = known.half_width + found.doubt / work
-        return MeshResult(level, float(estimate), doubt=doubt)
+        return MeshResult(level, error / work, doubt=doubt)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""

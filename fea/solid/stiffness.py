@@ -6,7 +6,7 @@ the usual c; two meshes give their own: K_1 − c·e_1 = K_2 − c·e_2. So K �
 K_h − 2c·e_h and K_h.
 
 Where the part without holes and keyway is solved (`fea.solid.superposition`), all this is of what these
-change, and K_h of the mesh is far above the K that it gives.
+change, and K_h is what that leaves of K without them.
 
 Where a finer mesh fails, is too large or is out of time, the answer is that of the mesh before it.
 """

@@ -17,7 +17,7 @@ from flexspline.fea.solid.field_solver import (
     ErrorScales,
     FieldSolver,
     by_correction,
-    level_of,
+    error_of,
 )
 from flexspline.fea.solid.load_cases import (
     SolvedStiffness,
@@ -64,7 +64,7 @@ class FullTorsion:
         """On one mesh; raises SolidError, MemoryError."""
         solved = torsion(model, self.driven)
         error = energy_error(model.mesh, solved.displacement, self.material)
-        return TurnedMesh(level_of(solved), error.relative, errors=error.error, turned=solved)
+        return TurnedMesh(solved.level, error.relative, errors=error.error, turned=solved)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
@@ -113,11 +113,11 @@ class TorsionCorrection:
         )
         if LEAST_LEFT * known.K_Nm_per_rad > K:
             raise CorrectionError(f"the effect of the {self.cuts} leaves too little of K")
-        error = energy_error(correction.mesh, correction.displacement, self.material)
-        estimate = error.error.sum() * 360 / correction.mesh.sector_deg / NMM_PER_NM
+        errors, whole_error = error_of(correction, self.material)
         doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
         level = correction.level(K, check)
-        return TurnedMesh(level, float(estimate / K), doubt / K, errors=error.error, turned=turned)
+        error = whole_error / NMM_PER_NM / K
+        return TurnedMesh(level, error, doubt / K, errors=errors, turned=turned)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
