@@ -33,14 +33,30 @@ def by_harmonics(
     return context.cache.get("harmonics", inputs, timed, _is_lasting)[0]
 
 
-def rim_by_harmonics(flexspline: PartModel, case: RimCase, solve: RimSolve) -> Stiffness:
-    """K_b of a body of revolution in a load case that `solve` answers; errors as of that."""
+def rim_by_harmonics(
+    flexspline: PartModel,
+    case: RimCase,
+    solve: RimSolve,
+    far_below_Nm_per_rad: float = 0.0,
+    far_bounds_pct: float = 0.0,
+) -> Stiffness:
+    """K_b of a body of revolution in a load case that `solve` answers; errors as of that.
+
+    Where K is certainly below `far_below_Nm_per_rad`, bounds `far_bounds_pct` apart [% of K] are enough.
+    """
     own, width = flexspline.material, flexspline.tolerance
+
+    def enough(found: Stiffness) -> bool:
+        far = found.upper_Nm_per_rad < far_below_Nm_per_rad
+        return far and 100 * found.half_width <= far_bounds_pct / 2
+
     return by_harmonics(
         flexspline,
         figure_of(case),
         RIM_CASES[case].title,
-        lambda outline, deadline: Refining(solve(outline, own, width, deadline)).last(),
+        lambda outline, deadline: Refining(solve(outline, own, width, deadline)).until(enough),
+        far_below_Nm_per_rad=far_below_Nm_per_rad,
+        far_bounds_pct=far_bounds_pct,
     )
 
 

@@ -13,9 +13,8 @@ from dataclasses import replace
 
 from flexspline.fea.types import MET, Stiffness
 from flexspline.geometry.errors import plain_number
-from flexspline.geometry.part import Part
-from flexspline.pipeline.enclosed_part import TOO_FAR, PartSolver, enclosure_of
-from flexspline.pipeline.enclosure import answered_within
+from flexspline.pipeline.enclosed_part import TOO_FAR, enclosure_of
+from flexspline.pipeline.enclosure import TwoBodies, answered_within
 from flexspline.pipeline.parts import PartModel
 
 RATIO_SPREAD = 0.25
@@ -25,37 +24,32 @@ between them, or 0.02 of their distance beyond."""
 
 def resting_with_holes(
     model: PartModel,
-    resting: PartSolver,
-    held: PartSolver,
+    resting: TwoBodies,
+    held: TwoBodies,
     held_of_part: Callable[[], Stiffness],
-    expected: float,
 ) -> Stiffness:
     """K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
 
-    `resting` and `held` solve a body of revolution, `held_of_part` the part with its seat held; it is asked
-    where the enclosure is wider than the tolerance only. `expected`: as of `enclosure_of`.
+    `resting` and `held` are its bodies of revolution, `held_of_part` solves the part with its seat held; it
+    is asked where the enclosure is wider than the tolerance only.
 
     Raises
     ------
     NestingError
-    ComputationError : of `resting` and `held`.
     """
-    ratios: dict[Part, tuple[float, float]] = {}
-
-    def solve(body: PartModel) -> Stiffness:
-        found, own = resting(body), held(body)
-        ratios[body.part] = (
+    enclosure = enclosure_of(model, resting)
+    if enclosure.half_width <= model.tolerance:
+        return enclosure
+    ratios = [
+        (
             found.lower_Nm_per_rad / own.lower_Nm_per_rad,
             found.upper_Nm_per_rad / own.upper_Nm_per_rad,
         )
-        return found
-
-    enclosure = enclosure_of(model, solve, expected)
-    if enclosure.half_width <= model.tolerance:
-        return enclosure
+        for found, own in ((resting.cut, held.cut), (resting.whole, held.whole))
+    ]
 
     def of_part() -> Stiffness:
-        return _judged(by_ratio(held_of_part(), [*ratios.values()]), model.tolerance)
+        return _judged(by_ratio(held_of_part(), ratios), model.tolerance)
 
     return answered_within(enclosure, of_part, model.tolerance)
 

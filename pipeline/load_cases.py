@@ -8,17 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from math import inf
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
 from flexspline.pipeline.by_harmonics import by_harmonics, rim_by_harmonics
 from flexspline.pipeline.enclosed_part import (
-    FIRST_BOUNDS_PCT,
-    PartSolver,
-    by_two_bodies,
+    FAR_BOUNDS_PCT,
+    body_model,
+    bounds_pct,
     enclosure_if_any,
     enclosure_of,
     has_enclosure,
@@ -32,24 +32,29 @@ from flexspline.pipeline.lobes_with_holes import lobes_with_holes
 from flexspline.pipeline.part_stiffness import (
     part_stiffness,
     revolved_stiffness,
-    torsion_enclosure,
 )
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
+FAR_HALF_WIDTHS = 3.0
+"""Half-width of the enclosure of K held over the tolerance, beyond which K with lift-off is solved coarsely:
+most of it is what the holes take off."""
+
 
 @dataclass(frozen=True)
 class RimModels:
     """How one load case of the rim is solved.
 
+    `revolved` solves a body of revolution, `bodies` the two around a part with bolt holes.
     `solid` is the solid model alone, `with_holes` is for parts with bolt holes where no model is asked for
     by name: where `solid` is None it answers under any setting, else where two bodies of revolution do not.
     `fast` is for studies and the live page: of a part, to bounds of a relative width; it writes no cache.
     """
 
     revolved: Callable[[PartModel], Stiffness]
+    bodies: Callable[[PartModel], TwoBodies]
     fast: Callable[[Part, float], Stiffness]
     solid: Callable[[PartModel], Stiffness] | None = None
     with_holes: Callable[[PartModel], Stiffness] | None = None
@@ -75,23 +80,25 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
         if asked.solid is None:
             return asked.with_holes(flexspline)
         if may_answer(flexspline):
-            return _of_holed(flexspline, asked.revolved, asked.with_holes)
+            return _of_holed(flexspline, asked.bodies, asked.with_holes)
     if asked.solid is None:
         raise ComputationError(
             f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
     solid = asked.solid(flexspline)
-    if enclosure := enclosure_if_any(flexspline, asked.revolved):
+    if enclosure := enclosure_if_any(flexspline, asked.bodies):
         check_against(solid, enclosure)
     return solid
 
 
 def _of_holed(
-    flexspline: PartModel, revolved: PartSolver, with_holes: Callable[[PartModel], Stiffness]
+    flexspline: PartModel,
+    bodies: Callable[[PartModel], TwoBodies],
+    with_holes: Callable[[PartModel], Stiffness],
 ) -> Stiffness:
     """The enclosure; where it is too wide K by torsion within it; at last what the holes change, solved."""
-    found = enclosure_if_any(flexspline, revolved, _expected(flexspline))
+    found = enclosure_if_any(flexspline, bodies)
     if found is None:
         return with_holes(flexspline)
     tolerance = flexspline.tolerance
@@ -102,29 +109,18 @@ def _of_holed(
             flexspline.context.progress.note(f"  no K_b in torsion to begin with: {fault}")
         else:
             found = answered_within(
-                found, lambda: _by_torsion(flexspline, K_b, revolved), tolerance
+                found, lambda: _by_torsion(flexspline, K_b, bodies(flexspline)), tolerance
             )
     if found.half_width <= tolerance:
         return found
     return answered_within(found, lambda: with_holes(flexspline), tolerance)
 
 
-def _by_torsion(flexspline: PartModel, K_b: Stiffness, revolved: PartSolver) -> Stiffness:
+def _by_torsion(flexspline: PartModel, K_b: Stiffness, bodies: TwoBodies) -> Stiffness:
     """K_b under the lobes from that in torsion and the two bodies of revolution."""
     whole = without_holes(flexspline, revolved_stiffness)
-    f, tolerance = flexspline.context.design.flexspline, flexspline.tolerance
-    entry = entry_doubt(f)
-
-    def answer(bodies: TwoBodies) -> Stiffness:
-        return lobes_by_torsion(K_b, whole, bodies, f.bolt_count, tolerance, entry)
-
-    return by_two_bodies(flexspline, revolved, answer, most_pct=FIRST_BOUNDS_PCT)
-
-
-def _expected(flexspline: PartModel) -> float:
-    """Half-width of torsion's enclosure: it takes a fraction of a second, and is kept."""
-    torsion = torsion_enclosure(flexspline)
-    return torsion.half_width if torsion else inf
+    f = flexspline.context.design.flexspline
+    return lobes_by_torsion(K_b, whole, bodies, f.bolt_count, flexspline.tolerance, entry_doubt(f))
 
 
 def by_itself(
@@ -137,34 +133,60 @@ def by_itself(
 
     of_part = partial(rim_by_harmonics, case=case, solve=solve)
 
+    def bodies(flexspline: PartModel) -> TwoBodies:
+        whole = without_holes(flexspline, of_part)
+        too_far = whole.lower_Nm_per_rad - 2 * flexspline.tolerance * whole.K_Nm_per_rad
+        cut = body_model(flexspline, nested_bodies(flexspline.part).cut, bounds_pct(flexspline))
+        return TwoBodies(
+            of_part(cut, far_below_Nm_per_rad=too_far, far_bounds_pct=FAR_BOUNDS_PCT), whole
+        )
+
     def enclosure(flexspline: PartModel) -> Stiffness:
-        return enclosure_of(flexspline, of_part, _expected(flexspline))
+        return enclosure_of(flexspline, bodies(flexspline))
 
     def fast(part: Part, width: float) -> Stiffness:
         return rim(part, solve, width)
 
-    return RimModels(of_part, fast, solid, with_holes or enclosure)
+    return RimModels(of_part, bodies, fast, solid, with_holes or enclosure)
 
 
 def _resting(flexspline: PartModel) -> Stiffness:
-    own, held = flexspline.material, CASES["lobes"].revolved(flexspline)
+    held = CASES["lobes"].revolved(flexspline)
+    return _resting_on(flexspline, held, flexspline.tolerance)
+
+
+def _resting_on(flexspline: PartModel, held: Stiffness, tolerance: float) -> Stiffness:
+    """Of a body of revolution; `held`: its K with the seat held; `tolerance`: as of `contact_stiffness`."""
+    own = flexspline.material
     return by_harmonics(
         flexspline,
         figure_of("lobes_contact"),
         RIM_CASES["lobes_contact"].title,
-        lambda outline, deadline: contact_stiffness(
-            outline, own, held, deadline, flexspline.tolerance
-        ),
+        lambda outline, deadline: contact_stiffness(outline, own, held, deadline, tolerance),
+        held_from_Nm_per_rad=held.lower_Nm_per_rad,
+        held_to_Nm_per_rad=held.upper_Nm_per_rad,
     )
+
+
+def _resting_bodies(flexspline: PartModel) -> TwoBodies:
+    """Their ratios to K held are as fine as the enclosure asks; coarser where K held has far wider bounds."""
+    held, bodies = CASES["lobes"].bodies(flexspline), nested_bodies(flexspline.part)
+    near = held.enclosure().half_width <= FAR_HALF_WIDTHS * flexspline.tolerance
+    pct = bounds_pct(flexspline)
+    pct = pct if near else max(pct, FAR_BOUNDS_PCT)
+
+    def solve(body: Part, own: Stiffness) -> Stiffness:
+        return _resting_on(body_model(flexspline, body, pct), own, own.half_width + pct / 100 / 2)
+
+    return TwoBodies(solve(bodies.cut, held.cut), solve(bodies.whole, held.whole))
 
 
 def _resting_with_holes(flexspline: PartModel) -> Stiffness:
     return resting_with_holes(
         flexspline,
-        _resting,
-        CASES["lobes"].revolved,
+        _resting_bodies(flexspline),
+        CASES["lobes"].bodies(flexspline),
         lambda: rim_stiffness(flexspline, "lobes"),
-        _expected(flexspline),
     )
 
 
@@ -181,6 +203,6 @@ CASES: Mapping[RimCase, RimModels] = {
         for name, case in RIM_CASES.items()
         if case.solve is not None
     },
-    "lobes_contact": RimModels(_resting, contact, with_holes=_resting_with_holes),
+    "lobes_contact": RimModels(_resting, _resting_bodies, contact, with_holes=_resting_with_holes),
 }
 SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
 from wrong_models import stiffen_solid_model, without_torsion
 
-from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
@@ -18,12 +17,13 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
 from flexspline.pipeline.analysis import stiffnesses, torque_field
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
+from flexspline.pipeline.enclosed_part import FAR_BOUNDS_PCT, TOO_FAR, bounds_pct, enclosure_of
 from flexspline.pipeline.enclosure import enclosed
 from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.revolved import rim
 from flexspline.pipeline.rim_case import RIM_CASES, held_rim
 
 CUP = load_design(EXAMPLES / "xb1-40.toml")
@@ -220,47 +220,34 @@ def test_lift_off_that_the_solid_model_cannot_solve_is_said(suite_cache: Path) -
     assert "meridian only" in found.missing["K_b_lobes_contact"].words
 
 
-def recorded() -> tuple[list[float], Callable[[PartModel], Stiffness]]:
-    """Tolerances [%] to which bodies are solved in torsion, and what solves them."""
-    asked: list[float] = []
-
-    def solve(body: PartModel) -> Stiffness:
-        asked.append(body.context.design.solver.tolerance_pct)
-        return part_stiffness.revolved_stiffness(body)
-
-    return asked, solve
-
-
-@pytest.mark.parametrize(("design", "times"), [(WIDE, 1), (CUP, 2)])
-def test_bodies_that_are_far_apart_are_not_solved_finely(
-    design: Design, times: int, suite_cache: Path
+@pytest.mark.parametrize(("design", "far"), [(WIDE, True), (CUP, False)])
+def test_a_cut_body_that_is_too_far_off_is_not_solved_finely(
+    design: Design, far: bool, suite_cache: Path
 ) -> None:
-    """At 0.1 %: what the holes take off K stays, however well each body is known."""
-    asked, solve = recorded()
+    """At 0.1 %: what the holes take off K stays, however well that body is known."""
     part = model(design.changed({"solver.tolerance_pct": 0.1}), suite_cache)
-    found = enclosure_of(part, solve)
-    of_two_bodies = [FIRST_BOUNDS_PCT] * 2 + [pytest.approx(BODY_SHARE * 0.1)] * 2
-    assert asked == of_two_bodies[: 2 * times]
-    fine = enclosed(part.part, lambda body: torsional_stiffness(
-        body.meridian, part.material, body.driven, KNOWN_TO))  # fmt: skip
-    # each end is off by its body's own bounds at most
-    assert found.half_width < fine.half_width + FIRST_BOUNDS_PCT / 100
-    assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + KNOWN_TO)
-    assert (found.shortfall.words == TOO_FAR) is (times == 1)
+    bodies = load_cases.CASES["lobes"].bodies(part)
+    fine = bounds_pct(part) / 100 / 2
+    assert bodies.whole.half_width <= fine
+    assert bodies.cut.half_width <= (FAR_BOUNDS_PCT / 100 / 2 if far else fine)
+    assert (bodies.cut.half_width > fine) is far
+    found = enclosure_of(part, bodies)
+    assert (found.shortfall.words == TOO_FAR) is far
+    finest = enclosed(part.part, lambda body: rim(body, held_rim, KNOWN_TO))
+    assert found.bounds_Nm_per_rad == pytest.approx(
+        finest.bounds_Nm_per_rad, rel=FAR_BOUNDS_PCT / 100
+    )
 
 
-@pytest.mark.parametrize(
-    ("expected", "first"), [(0.003, BODY_SHARE * 0.1), (0.0031, FIRST_BOUNDS_PCT)]
-)
-def test_where_another_case_tells_of_near_bodies_they_are_solved_finely_at_once(
-    expected: float, first: float, suite_cache: Path
+def test_lift_off_of_bodies_far_apart_is_the_same_by_coarse_ratios(
+    suite_cache: Path, monkeypatch
 ) -> None:
-    """Near is three times 0.1 %."""
-    asked, solve = recorded()
-    part = model(CUP.changed({"solver.tolerance_pct": 0.1}), suite_cache)
-    found = enclosure_of(part, solve, expected)
-    assert asked[0] == pytest.approx(first)
-    assert asked[-1] == pytest.approx(BODY_SHARE * 0.1)
-    twice = enclosure_of(part, solve)
-    same = pytest.approx(twice.bounds_Nm_per_rad, rel=1e-12)
-    assert found.bounds_Nm_per_rad == same
+    """Each ratio is known to as much as is asked of it, by however many meshes."""
+    part = model(WIDE.changed({"solver.tolerance_pct": 0.1}), suite_cache)
+    coarse = load_cases.CASES["lobes_contact"].bodies(part)
+    monkeypatch.setattr(load_cases, "FAR_HALF_WIDTHS", inf)
+    fine = load_cases.CASES["lobes_contact"].bodies(part)
+    for a, b in ((coarse.cut, fine.cut), (coarse.whole, fine.whole)):
+        assert len(a.levels) <= len(b.levels)
+        assert a.lower_Nm_per_rad <= b.upper_Nm_per_rad
+        assert b.lower_Nm_per_rad <= a.upper_Nm_per_rad

@@ -22,7 +22,7 @@ from flexspline.geometry.load import load_design
 from flexspline.geometry.nested import nested_bodies
 from flexspline.pipeline import load_cases, revolved
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.enclosed_part import by_two_bodies
+from flexspline.pipeline.enclosed_part import without_holes
 from flexspline.pipeline.enclosure import TwoBodies
 from flexspline.pipeline.lobes_by_torsion import (
     ENTRY_DOUBT,
@@ -67,16 +67,10 @@ def test_tetrahedra_under_the_lobes_agree(
         for each in (design, design.changed({"solver.model": "solid"}))
     )
     case = "lobes" if supported else "lobes_unsupported"
-    solve = load_cases.CASES[case].revolved
-    whole = by_two_bodies(part, revolved_stiffness, lambda bodies: bodies.whole, expected=0.0)
-    bodies = by_two_bodies(part, solve, lambda bodies: bodies.enclosure(), expected=0.0)
-    found = by_two_bodies(
-        part,
-        solve,
-        lambda bodies: lobes_by_torsion(
-            part_stiffness(part), whole, bodies, design.flexspline.bolt_count, part.tolerance
-        ),
-        expected=0.0,
+    whole, bodies = without_holes(part, revolved_stiffness), load_cases.CASES[case].bodies(part)
+    apart = bodies.enclosure()
+    found = lobes_by_torsion(
+        part_stiffness(part), whole, bodies, design.flexspline.bolt_count, part.tolerance
     )
     tetrahedra, alone = lobes_with_holes(part, supported), solid_lobes(by_itself, supported)
     for other in (tetrahedra, alone):
@@ -91,7 +85,7 @@ def test_tetrahedra_under_the_lobes_agree(
             "N·m/rad",
         )
         # both estimates are cautious: K is nearer than either says
-        assert bodies.half_width > 2 * found.half_width
+        assert apart.half_width > 2 * found.half_width
         least = min(found.half_width, tetrahedra.half_width)
         assert found.K_Nm_per_rad == pytest.approx(tetrahedra.K_Nm_per_rad, rel=least)
     assert not found.guaranteed
