@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexspline.fea.types import MeshLevel
+from flexspline.fea.types import MeshLevel, Shortfall, Stiffness, StiffnessModel
 
 ERROR_RATIOS = (0.6, 0.75)
 """q of meshes of twice the elements each: 0.59 and 0.72 on a sharply stepped shaft with ten holes, meshed
@@ -127,3 +127,25 @@ class ScaledEstimate:
         K, error, doubt = self.K_Nm_per_rad, self.relative, self.meshes[-1].doubt
         lower = K / (1 + 2 * error + missing + doubt)
         return EstimatedBounds(K / (1 + error + missing / 2), lower, K / (1 - doubt))
+
+    def stiffness(
+        self,
+        bounds: EstimatedBounds,
+        model: StiffnessModel,
+        symmetry: str,
+        method: str,
+        shortfall: Shortfall,
+    ) -> Stiffness:
+        """By these meshes; not guaranteed: the lower end is an estimate, and curved edges only follow fillets."""
+        return Stiffness(
+            K_Nm_per_rad=bounds.K,
+            lower_Nm_per_rad=bounds.lower,
+            upper_Nm_per_rad=bounds.upper,
+            guaranteed=False,
+            model=model,
+            symmetry=symmetry,
+            method=method,
+            levels=self.levels,
+            error_scale=self.scale,
+            shortfall=shortfall,
+        )

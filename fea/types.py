@@ -22,12 +22,17 @@ class Elastic:
 
     @classmethod
     def of(cls, material: ElasticMaterial) -> Elastic:
-        return cls(material.youngs_modulus_GPa * 1e3, material.poissons_ratio)
+        return cls(material.youngs_modulus_MPa, material.poissons_ratio)
 
     @property
     def mu(self) -> float:
         """Shear modulus G [MPa]."""
         return self.youngs_modulus_MPa / (2 * (1 + self.poissons_ratio))
+
+    @property
+    def plane_strain_MPa(self) -> float:
+        """E/(1 − ν²), of plates and of contact."""
+        return self.youngs_modulus_MPa / (1 - self.poissons_ratio**2)
 
     @property
     def lam(self) -> float:

@@ -26,6 +26,11 @@ class ElasticMaterial(DesignTable):
         default=0.3, description="1, ν; default 0.3, of metals"
     )
 
+    @property
+    def youngs_modulus_MPa(self) -> float:
+        """E, in the unit of stress."""
+        return self.youngs_modulus_GPa * 1e3
+
 
 class Material(ElasticMaterial):
     """Elastic constants, fatigue limit and density."""

@@ -61,7 +61,7 @@ def ring_bending_stress_MPa(design: Design) -> float:
     """
     f, material = design.flexspline, design.material.flexspline
     middle = f.inner_radius + f.ring_thickness_mm / 2
-    plane = material.youngs_modulus_GPa * 1e3 / (1 - material.poissons_ratio**2)
+    plane = material.youngs_modulus_MPa / (1 - material.poissons_ratio**2)
     return plane * f.ring_thickness_mm / 2 * 3 * design.w0_mm / middle**2
 
 

@@ -11,7 +11,7 @@ with n (shorter waves are stiffer) and the sum of all t_n² is known (Parseval).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sin
 
 import numpy as np
@@ -26,16 +26,15 @@ from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 from flexspline.fea.refinement import refinements
 from flexspline.fea.scaled_estimate import MeshResult, ScaledEstimate
-from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Shortfall, Stiffness
+from flexspline.fea.types import Elastic, MeshLevel, Shortfall, Stiffness
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.percent import percent
 
 LOBE_HALF_WIDTH = pi / 6
 """φ0: torque enters over ±30° about each end of the major axis (docs/contract.md)."""
-TORQUE = NMM_PER_NM
-"""Applied torque [N·mm]: 1 N·m."""
 TAIL_SHARE = 0.1
 """Harmonics are added until the rest is below this share of the bounds' wanted width."""
 MOST_HARMONICS = 200
@@ -56,7 +55,7 @@ where the meshes claimed 2.3."""
 
 @dataclass(frozen=True)
 class LobeSolution:
-    """All harmonics on one mesh, for TORQUE.
+    """All harmonics on one mesh, for LOBE_TORQUE_NMM.
 
     Attributes
     ----------
@@ -79,7 +78,7 @@ class LobeSolution:
     @property
     def K(self) -> float:
         """T²/(2·energy) [N·m/rad]."""
-        return TORQUE**2 / (2 * sum(self.energies)) / NMM_PER_NM
+        return stiffness_of_work(2 * sum(self.energies))
 
     @property
     def estimate(self) -> float:
@@ -107,7 +106,7 @@ def lobe_harmonic(n: int) -> Harmonic:
 
 @dataclass(frozen=True)
 class SolvedLobes:
-    """The harmonics n = 0, 2, 4, … of the lobe load, TORQUE, on the finest mesh.
+    """The harmonics n = 0, 2, 4, … of the lobe load, LOBE_TORQUE_NMM, on the finest mesh.
 
     u_r = −U sin nφ, u_θ = V cos nφ, u_z = −W sin nφ of `amplitudes`, (count, 3) each [mm].
     """
@@ -191,23 +190,13 @@ class _RevolvedLobes:
         """K between its bounds."""
         found, missing = self.estimate.at_given_torque(self.missing), self.missing
         last = 2 * (len(self.found.energies) - 1)
-        return Stiffness(
-            K_Nm_per_rad=found.K,
-            lower_Nm_per_rad=found.lower,
-            upper_Nm_per_rad=found.upper,
-            guaranteed=False,  # the lower end is an estimate, and curved edges only follow the fillets
-            model="axisymmetric",
-            symmetry="body of revolution",
-            method=(
-                f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery "
-                f"estimate (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by "
-                f"{self.estimate.scale:.2f}"
-            ),
-            levels=self.estimate.levels,
-            error_scale=self.estimate.scale,
-            shortfall=shortfall,
-            harmonics=tuple(each / sum(self.found.energies) for each in self.found.energies),
+        method = (
+            f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery estimate"
+            f" (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by {self.estimate.scale:.2f}"
         )
+        harmonics = tuple(each / sum(self.found.energies) for each in self.found.energies)
+        K = self.estimate.stiffness(found, "axisymmetric", "body of revolution", method, shortfall)
+        return replace(K, harmonics=harmonics)
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         error = self.found.error
@@ -221,7 +210,7 @@ def solve_lobes(
     radius = model.space.places[model.on("mesh"), 0]
     width = np.ptp(model.space.places[model.on("mesh"), 1])
     # torque of a traction t0·t(φ): t0 R² width ∫ t dφ = t0 R² width 2 φ0
-    peak = TORQUE / (radius[0] ** 2 * width * 2 * LOBE_HALF_WIDTH)
+    peak = LOBE_TORQUE_NMM / (radius[0] ** 2 * width * 2 * LOBE_HALF_WIDTH)
     square = 2 * 3 / 4 * LOBE_HALF_WIDTH / pi  # Σ t_n² over n > 0, + 2 t_0²: 1/π ∫ t² of two bumps
     left = square - 2 * lobe_coefficient(0) ** 2
     energies: list[float] = []
@@ -256,6 +245,6 @@ def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:
         elements=model.mesh.elements,
         dofs=found.unknowns,
         K_Nm_per_rad=found.K,
-        K_check_Nm_per_rad=TORQUE**2 / found.work / NMM_PER_NM,
+        K_check_Nm_per_rad=stiffness_of_work(found.work),
         residual=found.residual,
     )

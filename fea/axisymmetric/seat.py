@@ -14,9 +14,9 @@ import numpy as np
 from skfem import condense
 
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
-from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
+from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, lobe_coefficient
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
-from flexspline.fea.types import NMM_PER_NM
+from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class SeatCompliance:
 
     Attributes
     ----------
-    free : (a, m) radial displacement [mm] under TORQUE at the lobes with nothing on the seat.
+    free : (a, m) radial displacement [mm] under LOBE_TORQUE_NMM at the lobes with nothing on the seat.
     harmonics : (a/2 + 1, m, m) radial displacement per force of harmonics 0, 2, … a [mm per N/rad].
     free_work : torque times rotation with nothing on the seat [N·mm].
     unknowns : of one harmonic.
@@ -54,7 +54,7 @@ class SeatCompliance:
     def stiffness(self, force: np.ndarray) -> float:
         """K [N·m/rad] with seat forces (a, m) [N/rad]; their share of the work by Betti's theorem."""
         work = self.free_work + 2 * pi / len(self.angles) * float((force * self.free).sum())
-        return TORQUE**2 / work / NMM_PER_NM
+        return stiffness_of_work(work)
 
 
 def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> SeatCompliance:
@@ -69,7 +69,7 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
     spread = _spread(model, seat, most_places)
     phi = np.arange(angles) * pi / angles
     ring = model.space.places[model.on("mesh")]
-    peak = TORQUE / (ring[0, 0] ** 2 * np.ptp(ring[:, 1]) * 2 * LOBE_HALF_WIDTH)
+    peak = LOBE_TORQUE_NMM / (ring[0, 0] ** 2 * np.ptp(ring[:, 1]) * 2 * LOBE_HALF_WIDTH)
     push = np.zeros((3 * model.space.count, spread.shape[1]))
     push[3 * seat + RADIAL] = spread
     free = np.zeros((angles, spread.shape[1]))

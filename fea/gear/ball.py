@@ -23,7 +23,7 @@ def point_contact(along: float, across: float, material: Elastic) -> float:
     ratio = _ellipticity(apart)
     m = 1 - ratio**-2
     shape = 2 * ellipk(m) / pi * (pi / (2 * ratio**2 * ellipe(m))) ** (1 / 3)
-    soft = 2 * (1 - material.poissons_ratio**2) / material.youngs_modulus_MPa
+    soft = 2 / material.plane_strain_MPa
     return float(shape * (3 * soft / (2 * total)) ** (2 / 3) * total / 2)
 
 

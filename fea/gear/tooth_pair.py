@@ -98,5 +98,5 @@ def clamped(
 
 def flank_contact(width: float, *materials: Elastic) -> float:
     """Of two flanks on each other [mm/N]: the sum of 2(1 − ν²)/(π E b), whatever the load."""
-    soft = sum((1 - m.poissons_ratio**2) / m.youngs_modulus_MPa for m in materials)
+    soft = sum(1 / m.plane_strain_MPa for m in materials)
     return 2 * soft / (pi * width)

@@ -48,10 +48,11 @@ class Tube:
 
     def torque_Nm(self, ends: EndFixity) -> float:
         """Of a perfect tube."""
-        E, nu = self.material.youngs_modulus_MPa, self.material.poissons_ratio
+        nu = self.material.poissons_ratio
         H = sqrt(1 - nu * nu) * self.length**2 / (self.wall * self.radius)
         a, b, c = TERMS[ends]
-        stress = E / (1 - nu * nu) * (self.wall / self.length) ** 2 * (a + sqrt(b + c * H**1.5))
+        bending = self.material.plane_strain_MPa * (self.wall / self.length) ** 2
+        stress = bending * (a + sqrt(b + c * H**1.5))
         return stress / self.stress_MPa(1.0)
 
     @property

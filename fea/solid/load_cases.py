@@ -11,6 +11,7 @@ from skfem import Functional, LinearForm
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.errors import SolveError
+from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import Model, Supports
@@ -37,7 +38,7 @@ LOBE_DEGREE = 8
 LEFT_OUT = 100.0
 """a(v, v) of a wave over E is taken to be no more: 0.8 to 2.3 on four random parts, all waves."""
 FORCES = LinearForm(lambda v, w: w.traction * v, dtype=complex)
-TORQUE = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
+TORQUE_OF_TRACTION = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
 """Of a tangential traction about z."""
 
 
@@ -207,11 +208,12 @@ def lobes(model: Model, supported: bool) -> SolvedStiffness:
     found = []
     for wave, load in loads.items():
         supports = _under_lobes(model, wave, supported)
-        found.append(supports.solve(load * (NMM_PER_NM / torque)))
-    scale = NMM_PER_NM**2 / NMM_PER_NM
+        found.append(supports.solve(load * (LOBE_TORQUE_NMM / torque)))
     stored, work = sum(w.stored for w in found), sum(w.work for w in found)
     solved = _of_waves(model, found, "antisymmetric")
-    return SolvedStiffness(**vars(solved), K_energy=scale / stored, K_check=scale / work)
+    return SolvedStiffness(
+        **vars(solved), K_energy=stiffness_of_work(stored), K_check=stiffness_of_work(work)
+    )
 
 
 def lobe_correction(
@@ -272,7 +274,7 @@ def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:
         forces = FORCES.assemble(basis, traction=wave.of(_lobe_traction, phi))
         loads[wave][model.space.node, TANGENTIAL] = forces
     mean = CyclicWave(0, repeats).of(_lobe_traction, phi)
-    return loads, float(TORQUE.assemble(basis, traction=mean)) * model.copies
+    return loads, float(TORQUE_OF_TRACTION.assemble(basis, traction=mean)) * model.copies
 
 
 def _lobe_traction(phi: np.ndarray) -> np.ndarray:

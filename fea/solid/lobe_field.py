@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from flexspline.fea.axisymmetric.lobes import TORQUE
+from flexspline.fea.lobe_torque import stiffness_of_work, work_of_stiffness
 from flexspline.fea.scaled_estimate import MeshResult
 from flexspline.fea.solid.field_solver import (
     CORRECTION_SCALES,
@@ -20,7 +20,7 @@ from flexspline.fea.solid.load_cases import lobe_correction, lobes
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeUnderLobes
-from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.fea.types import Elastic
 
 WAVES_SHARE = 0.05
 """Of the tolerance: what waves may add to the bounds that are not solved. On a hat with nine holes one of
@@ -72,12 +72,10 @@ class LobeCorrection:
         self._whole = whole = next(self.wholes, self._whole)
         assert whole is not None
         known = whole.stiffness
-        work = TORQUE**2 / (known.K_Nm_per_rad * NMM_PER_NM)
+        work = work_of_stiffness(known.K_Nm_per_rad)
         found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
         _, error = error_of(found, self.material)
-        K, check = (
-            TORQUE**2 / (work + lost) / NMM_PER_NM for lost in (found.lost, found.lost_by_work)
-        )
+        K, check = (stiffness_of_work(work + lost) for lost in (found.lost, found.lost_by_work))
         work += found.lost
         level = found.level(K, check)
         doubt = known.half_width + found.doubt / work

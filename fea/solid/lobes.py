@@ -103,22 +103,11 @@ def lobe_stiffness(
     rest = (mesh for mesh, _ in meshes)
     found = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
     shortfall = refine(found, mesh, Deadline(limit_s))
-    bounds = estimate.at_given_torque()
-    return Stiffness(
-        K_Nm_per_rad=bounds.K,
-        lower_Nm_per_rad=bounds.lower,
-        upper_Nm_per_rad=bounds.upper,
-        guaranteed=False,  # the lower end is an estimate
-        model="solid",
-        symmetry=symmetry,
-        method=field.method(
-            "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
-            f" {estimate.scale:.2f}"
-        ),
-        levels=estimate.levels,
-        error_scale=estimate.scale,
-        shortfall=shortfall,
+    method = field.method(
+        "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
+        f" {estimate.scale:.2f}"
     )
+    return estimate.stiffness(estimate.at_given_torque(), "solid", symmetry, method, shortfall)
 
 
 @dataclass

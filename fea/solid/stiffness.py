@@ -191,25 +191,15 @@ class _SolidTorsion:
         return self.mesh(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
     def answer(self, symmetry: str, shortfall: Shortfall) -> Stiffness:
-        """The stiffness; its lower end is an estimate."""
+        """The stiffness."""
         estimate, meshes = self.estimate, len(self.estimate.meshes)
-        found = estimate.at_given_angle()
         how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"
         error = (
             "recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by"
             f" {estimate.scale:.2f}, {how}"
         )
-        return Stiffness(
-            K_Nm_per_rad=found.K,
-            lower_Nm_per_rad=found.lower,
-            upper_Nm_per_rad=found.upper,
-            guaranteed=False,  # the lower end is an estimate
-            model="solid",
-            symmetry=symmetry,
-            method=self._field.method(error),
-            levels=estimate.levels,
-            error_scale=estimate.scale,
-            shortfall=shortfall,
+        return estimate.stiffness(
+            estimate.at_given_angle(), "solid", symmetry, self._field.method(error), shortfall
         )
 
 
