@@ -136,7 +136,7 @@ class ScaledEstimate:
         method: str,
         shortfall: Shortfall,
     ) -> Stiffness:
-        """By these meshes; not guaranteed: the lower end is an estimate, and curved edges only follow fillets."""
+        """By these meshes; not guaranteed: the lower end is an estimate, curved edges only follow fillets."""
         return Stiffness(
             K_Nm_per_rad=bounds.K,
             lower_Nm_per_rad=bounds.lower,
