@@ -56,17 +56,17 @@ class FigureTasks:
     """
 
     def __init__(self, context: AnalysisContext, solved: Callable[[PartModel], None]) -> None:
-        """`solved` is told each part after its K, by the thread that found it; what another process found
-        it is told at the end."""
+        """`solved` is told each part after its K, by one of two threads."""
         self._context, self._solved = context, solved
         self._tasks: list[Callable[[], _TaskResult]] = []
-        self._untold: dict[str, PartModel] = {}
+        self._parts: dict[int, PartModel] = {}
         self._process = os.getpid()
 
     def add_part(self, name: str, part: PartModel) -> None:
         """K of a part, by the name of the figure."""
-        self._untold[name] = part
-        self._tasks.append(partial(self._found, partial(self._part, name, part)))
+        self._parts[len(self._tasks)] = part
+        figures = partial(_stiffness, name, partial(part_stiffness, part))
+        self._tasks.append(partial(self._found, figures))
 
     def add_rim(self, rim: PartModel) -> None:
         """What the lobes and the ellipse do to the rim."""
@@ -81,31 +81,32 @@ class FigureTasks:
 
     def figures(self, begun: Callable[[], None]) -> Figures:
         """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
+        figures = Figures()
+
+        def told(number: int, found: _TaskResult) -> None:
+            figures.add(found.figures)
+            self._learn(found)
+            if number in self._parts:
+                self._solved(self._parts[number])
+
         if may_copy():
-            found = results_of(self._tasks, begun)
-        else:
-            begun()
-            with beside(self._context.progress, self._tasks[1:]) as rest:
-                found = [*(task() for task in self._tasks[:1]), *rest()]
-        figures, cache = Figures(), self._context.cache
-        for each in found:
-            figures.add(each.figures)
-            for known, there in ((cache.passing, each.passing), (cache.failed, each.failed)):
-                known.update({key: value for key, value in there.items() if key not in known})
-            for stage, seconds in each.seconds.items():
-                self._context.progress.add(stage, seconds)
-        for name in [*self._untold]:
-            self._tell(name)
+            results_of(self._tasks, begun, told)
+            return figures
+        begun()
+        tasks = [partial(_then, task, partial(told, n)) for n, task in enumerate(self._tasks)]
+        with beside(self._context.progress, tasks[1:]) as rest:
+            for task in tasks[:1]:
+                task()
+            rest()
         return figures
 
-    def _part(self, name: str, part: PartModel) -> Figures:
-        figures = _stiffness(name, partial(part_stiffness, part))
-        if os.getpid() == self._process:
-            self._tell(name)
-        return figures
-
-    def _tell(self, name: str) -> None:
-        self._solved(self._untold.pop(name))
+    def _learn(self, found: _TaskResult) -> None:
+        """What a copy of this process remembers of its task."""
+        cache = self._context.cache
+        for known, there in ((cache.passing, found.passing), (cache.failed, found.failed)):
+            known.update({key: value for key, value in there.items() if key not in known})
+        for stage, seconds in found.seconds.items():
+            self._context.progress.add(stage, seconds)
 
     def _found(self, make: Callable[[], Figures]) -> _TaskResult:
         if os.getpid() == self._process:
@@ -118,6 +119,10 @@ class FigureTasks:
             dict(cache.failed),
             {k: s - seconds.get(k, 0.0) for k, s in self._context.progress.seconds.items()},
         )
+
+
+def _then(task: Callable[[], _TaskResult], told: Callable[[_TaskResult], None]) -> None:
+    told(task())
 
 
 def _stiffness(name: str, solve: Callable[[], Stiffness]) -> Figures:

@@ -1,4 +1,4 @@
-"""Independent tasks in two processes: the second begins as a copy of this one, and sends what it found.
+"""Independent tasks in two processes: the second begins as a copy of this one, and sends what it finds.
 
 Copying a process costs some milliseconds where starting one that imports as much costs a second.
 """
@@ -9,10 +9,12 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from queue import SimpleQueue
+from threading import Thread
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -49,17 +51,20 @@ def may_copy() -> bool:
 
 
 def results_of(
-    tasks: Sequence[Callable[[], T]], begun: Callable[[], None] = lambda: None
+    tasks: Sequence[Callable[[], T]],
+    begun: Callable[[], None] = lambda: None,
+    told: Callable[[int, T], None] = lambda number, result: None,
 ) -> list[T]:
     """What each task returns, in their order; a task must change nothing that others look at.
 
     A second process takes those not yet begun, if there may be one. Where it fails, whatever the reason, its
     tasks are done here once more, and what they raise then is raised. `begun` is called here after it began,
-    and may start threads: the copy is made.
+    and may start threads: the copy is made. `told` is given each task's number and result, between the tasks
+    of this process.
     """
     if len(tasks) < 2 or not may_copy():
         begun()
-        return [task() for task in tasks]
+        return [*_done_here(tasks, range(len(tasks)), told).values()]
     copying = get_context("fork")
     with ExitStack() as open_files:
         try:
@@ -72,16 +77,20 @@ def results_of(
             second.start()
         except OSError:  # no process or open file more is allowed, or no memory
             begun()
-            return [task() for task in tasks]
+            return [*_done_here(tasks, range(len(tasks)), told).values()]
         there.close()
         try:
             begun()
-            done = _work(numbers, tasks)
-            done |= _received(here)
+            received = _Received(here)
+            done = _done_here(tasks, numbers, told, received.new)
+            received.join()
+            done |= received.new(told)
         finally:
             second.kill()
             second.join()
-        return [done[n] if n in done else task() for n, task in enumerate(tasks)]
+        left = [n for n in range(len(tasks)) if n not in done]
+        done |= _done_here(tasks, left, told)
+        return [done[n] for n in range(len(tasks))]
 
 
 class _TaskNumbers:
@@ -115,9 +124,19 @@ def _can_copy() -> bool:
     return True
 
 
-def _work(numbers: Iterable[int], tasks: Sequence[Callable[[], T]]) -> dict[int, T]:
-    """What the tasks return that nobody has begun, by their number."""
-    return {number: tasks[number]() for number in numbers}
+def _done_here(
+    tasks: Sequence[Callable[[], T]],
+    numbers: Iterable[int],
+    told: Callable[[int, T], None],
+    arrived: Callable[[Callable[[int, T], None]], dict[int, T]] = lambda told: {},
+) -> dict[int, T]:
+    """What tasks return, by their number, and what `arrived` has after each of them."""
+    done: dict[int, T] = {}
+    for number in numbers:
+        done[number] = tasks[number]()
+        told(number, done[number])
+        done |= arrived(told)
+    return done
 
 
 def _send_results(
@@ -127,15 +146,30 @@ def _send_results(
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         end_with(parent)
-        to.send(_work(numbers, tasks))
+        for number in numbers:
+            to.send((number, tasks[number]()))
     except BaseException:
         os._exit(1)  # the first process meets the fault itself
 
 
-def _received(sent: Connection) -> dict[int, Any]:
-    """Nothing where the second process ended without an answer, or in the middle of one."""
-    try:
-        received: dict[int, Any] = sent.recv()
-    except Exception:  # what it sent may fail in any way as it is made again
-        return {}
-    return received
+class _Received(Thread):
+    """What the second process sends, taken from the pipe at once: it need not wait until somebody asks."""
+
+    def __init__(self, sent: Connection) -> None:
+        super().__init__(daemon=True)
+        self._sent, self._arrived = sent, SimpleQueue[tuple[int, Any]]()
+        self.start()
+
+    def run(self) -> None:
+        # at the end, or in the middle of a result; and what it sent may fail in any way as it is made again
+        with suppress(Exception):
+            while True:
+                self._arrived.put(self._sent.recv())
+
+    def new(self, told: Callable[[int, Any], None]) -> dict[int, Any]:
+        """What came since the last call, by the numbers of the tasks."""
+        found = {}
+        while not self._arrived.empty():
+            number, found[number] = self._arrived.get()
+            told(number, found[number])
+        return found

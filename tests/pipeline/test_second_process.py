@@ -64,6 +64,35 @@ def test_words_kept_in_memory_have_one_process(monkeypatch: pytest.MonkeyPatch) 
 
 
 @linux_with_two_processors
+def test_what_the_other_process_found_is_told_between_the_tasks_of_this_one() -> None:
+    told: list[tuple[int, int]] = []
+    with second_process():
+        pids = results_of(
+            [partial(wait_and_say, k) for k in range(6)],
+            told=lambda number, pid: told.append((number, pid)),
+        )
+    assert sorted(told) == [*enumerate(pids)]  # each once, with its own result
+    ours = [pid == os.getpid() for _, pid in told]
+    assert ours.index(False) < len(ours) - 1 - ours[::-1].index(True)
+
+
+def test_all_is_told_where_there_is_one_process_and_where_the_other_fails() -> None:
+    here, told = os.getpid(), []
+
+    def task(number: int) -> int:
+        if os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        time.sleep(0.05)
+        return number
+
+    tasks = [partial(task, k) for k in range(4)]
+    results_of(tasks, told=lambda number, result: told.append((number, result)))
+    with second_process():
+        results_of(tasks, told=lambda number, result: told.append((number, result)))
+    assert sorted(told) == sorted(2 * [(k, k) for k in range(4)])
+
+
+@linux_with_two_processors
 def test_who_is_done_takes_the_next_task() -> None:
     """A long one and five short ones: the other process does all the short ones."""
 
