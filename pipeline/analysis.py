@@ -5,34 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from flexspline.fea.axisymmetric.stress import torsion_stress
-from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.peak import stress_field
-from flexspline.fea.types import MET, Shortfall, SolidField
+from flexspline.fea.types import SolidField
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
-from flexspline.geometry.percent import percent
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.ellipse_peak import (
-    PEAK_STRESS_TOLERANCE,
-    ellipse_field,
-)
+from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.figure_tasks import FigureTasks
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
+from flexspline.pipeline.torque_stress import torque_field
 from flexspline.pipeline.two_threads import beside
-from flexspline.pipeline.unfilleted_shaft import FILLETS, marked_unfilleted
-from flexspline.pipeline.wave_generator import sharp_edges
 
 
 def analysis_context(
@@ -166,45 +156,3 @@ def _gear(context: AnalysisContext) -> GearCurve:
 def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
     """The four-term sum with the stiffnesses found."""
     return backlash(design, found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad)
-
-
-def torque_field(model: PartModel) -> SolidField:
-    """Displacement and stress under the design's torque T_L; the peak from the model that answers."""
-    design = model.context.design
-    torque = design.load.torque_Nm
-    twisted = twisted_part(model)
-    turned = turned_field(model, twisted)
-    with model.context.progress.stage(f"stress of the {model.name} under torque"):
-        solved = stress_field(
-            twisted.meshed.mesh,
-            turned.displacement * (torque / turned.K_Nm_per_rad),
-            model.material,
-            f"{model.name} under T_L = {torque:g} N·m",
-            sharp_edges(model, twisted.meshed),
-        )
-        if not model.axisymmetric:
-            shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
-            solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
-            return marked_unfilleted(solved) if twisted.without_fillets else solved
-        exact = torsion_stress(
-            model.part.meridian,
-            model.material,
-            model.part.driven,
-            torque,
-            model.part.exclusion_mm,
-            PEAK_STRESS_TOLERANCE,
-            Deadline(STAGE_SECONDS),
-        )
-    left_out = FILLETS if twisted.without_fillets else ""
-    return replace(solved, peak=exact.peak, left_out=left_out)
-
-
-def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
-    """Of a mesh that is refined no further since two bodies of revolution enclose K (`twisted_part`)."""
-    half = twisted.stiffness.half_width
-    if half <= tolerance:
-        return MET
-    own, asked = percent(half), percent(tolerance)
-    return Shortfall(
-        f"it is computed on one mesh, whose own K is known to ± {own} where ± {asked} is asked"
-    )

@@ -103,9 +103,10 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     >>> round(double / once, 9)
     2.0
     """
-    from flexspline.pipeline.analysis import analysis_context, torque_field
+    from flexspline.pipeline.analysis import analysis_context
     from flexspline.pipeline.ellipse_peak import ellipse_field
     from flexspline.pipeline.stress_limits import STRESS_CASES
+    from flexspline.pipeline.torque_stress import torque_field
 
     require_design(design)
     context = analysis_context(design)

@@ -14,12 +14,12 @@ from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
-from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.temporary_files import scratch_folder, temporary_folder
+from flexspline.pipeline.torque_stress import torque_field
 from flexspline.results.atomic import named, write_bytes
 from flexspline.results.mesh_files import PatchedMesh, write_mesh
 from flexspline.results.plain_letters import plain

@@ -71,10 +71,14 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         f"{part}: {p.excluded}" for part, p in zip(PART_NAMES, peaks, strict=True) if p is not None
     ]
     if stated:
+        own = content.flexspline_peak
+        why = (
+            f"Of the flexspline under torque: {own.stands_for}. " if own and own.stands_for else ""
+        )
         found.append(
             [
                 "Peak stress",
-                "Left out of the peaks: "
+                f"{why}Left out of the peaks: "
                 + "; ".join(stated)
                 + ". Values there do not converge with mesh refinement; fillets that are not named here are "
                 "included. The stress of the wave generator and that of the torque act together in "

@@ -186,9 +186,10 @@ def _verified_words(v: Verified) -> list[str]:
     for c in v.checks:
         figure = entry(c.key)
         alarm = "" if c.agrees else f"  ALARM: {disagreement(c)}"
+        own = f"; solid model from {figure.range_text(*c.solid_bounds)}" if c.solid_bounds else ""
         lines.append(
             f"    {figure.symbol} {figure.text(c.fast)} and {figure.with_unit(c.solid)} "
-            f"({signed(c.difference_pct, 1)} %){alarm}"
+            f"({signed(c.difference_pct, 1)} %{own}){alarm}"
         )
     return lines
 

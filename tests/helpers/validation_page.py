@@ -18,7 +18,11 @@ TOPICS = {
         "test_free_rim_with_holes",
         "test_seat_width",
     ),
-    "Stress on the meridian": ("test_axisymmetric_stress", "test_stress_rule"),
+    "Stress on the meridian": (
+        "test_axisymmetric_stress",
+        "test_stress_rule",
+        "test_peak_under_torque",
+    ),
     "The toothed ring": ("test_toothed_ring",),
     "Solid elements against closed forms": ("test_solid_closed_forms",),
     "Solid elements on published benchmarks": (

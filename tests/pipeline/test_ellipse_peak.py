@@ -17,7 +17,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import ellipse_peak as under_test
-from flexspline.pipeline import part_meshes
+from flexspline.pipeline import part_meshes, peak_with_holes
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -52,12 +52,14 @@ def part(folder: Path, monkeypatch: pytest.MonkeyPatch) -> PartModel:
 def test_bodies_that_agree_answer_with_the_one_that_has_no_holes(part: PartModel) -> None:
     whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
     found = under_test.ellipse_peak(part)
-    assert found == replace(whole, stands_for=under_test.WITHOUT_HOLES)
+    assert found == replace(whole, stands_for=peak_with_holes.WITHOUT_HOLES)
     assert not whole.stands_for
 
 
 def test_bodies_that_differ_leave_it_to_the_solid_model(part, monkeypatch) -> None:
-    monkeypatch.setattr(under_test, "AGREEMENT", 0.0)  # two meshes never agree to the last digit
+    monkeypatch.setattr(
+        peak_with_holes, "AGREEMENT", 0.0
+    )  # two meshes never agree to the last digit
     assert under_test.ellipse_peak(part).mises_MPa == SOLID_MPa
 
 
@@ -66,7 +68,7 @@ def test_stress_at_the_holes_is_looked_up_where_its_bound_is_too_high(
     part: PartModel, monkeypatch: pytest.MonkeyPatch, share: float, answered: bool
 ) -> None:
     """Of the peak, at one node of a solid model in the annulus of the holes; more of it at the rim."""
-    monkeypatch.setattr(under_test, "KIRSCH", 1e3)
+    monkeypatch.setattr(peak_with_holes, "KIRSCH", 1e3)
     whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
     bolts = part.part.bolts
     assert bolts is not None
@@ -85,14 +87,14 @@ def test_where_no_mesh_can_be_made_the_peak_without_holes_is_given_and_said(
     def fails(*given: object) -> SolidField:
         raise ComputationError("no mesh")
 
-    monkeypatch.setattr(under_test, "KIRSCH", 1e3)
+    monkeypatch.setattr(peak_with_holes, "KIRSCH", 1e3)
     for name in ("coarse_ellipse", "solid_ellipse"):
         monkeypatch.setattr(under_test, name, fails)
     found = under_test.ellipse_peak(part)
     whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
     assert found.mises_MPa == whole.mises_MPa
     assert found.shortfall.words == "the stress at the bolt holes is not known: no mesh"
-    monkeypatch.setattr(under_test, "AGREEMENT", 0.0)
+    monkeypatch.setattr(peak_with_holes, "AGREEMENT", 0.0)
     with pytest.raises(ComputationError, match="no mesh"):
         under_test.ellipse_peak(part)
 
@@ -106,8 +108,8 @@ def test_a_row_of_holes_raises_the_stress_more_than_one_hole() -> None:
     """Six holes of 2.5 mm on a circle of 13 mm, 6.5 mm apart: 4·6.5/(6.5 − 2.5) = 6.5 times."""
     six = CUP.part("flexspline").bolts
     assert six is not None
-    assert under_test.raised(1.0, six) == pytest.approx(6.5)
-    assert under_test.raised(1.0, replace(six, count=1)) == pytest.approx(4.0)
+    assert peak_with_holes.raised(1.0, six) == pytest.approx(6.5)
+    assert peak_with_holes.raised(1.0, replace(six, count=1)) == pytest.approx(4.0)
 
 
 @pytest.mark.long  # without holes by default: tests/verification/test_peak_on_the_ellipse.py

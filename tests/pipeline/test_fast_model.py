@@ -13,7 +13,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.pipeline import fast_model
-from flexspline.pipeline.ellipse_peak import PEAK_STRESS_TOLERANCE
+from flexspline.pipeline.peak_with_holes import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.revolved import revolved
 from flexspline.pipeline.rim_case import RIM_CASES
 

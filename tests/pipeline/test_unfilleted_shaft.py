@@ -17,7 +17,7 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.nested import unfilleted_bodies
 from flexspline.geometry.part import Part
-from flexspline.pipeline import analysis, unfilleted_shaft
+from flexspline.pipeline import torque_stress, unfilleted_shaft
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosure import overlap
 from flexspline.pipeline.part_stiffness import turned_field, twisted_part
@@ -96,8 +96,8 @@ def test_its_stress_is_compared_with_no_limit(
 ) -> None:
     """The fillets, where it is largest, are not in the mesh; the field is that of the torque on that mesh."""
     twisted = between
-    monkeypatch.setattr(analysis, "twisted_part", lambda _: twisted)
-    field = analysis.torque_field(shaft)
+    monkeypatch.setattr(torque_stress, "twisted_part", lambda _: twisted)
+    field = torque_stress.torque_field(shaft)
     assert field.left_out == "its fillets"
     assert field.peak.at_excluded_border
     assert "its fillets, which the mesh leaves out" in field.peak.excluded
@@ -118,7 +118,7 @@ def test_the_peak_of_a_body_of_revolution_has_its_fillets(
     """It is the meridian's, whatever mesh the picture has."""
     model = AnalysisContext(shaft_of(STEPS, fillet=0.4), Cache(tmp_path), Progress()).part("shaft")
     twisted = replace(twisted_part(model), without_fillets=True)
-    monkeypatch.setattr(analysis, "twisted_part", lambda _: twisted)
-    field = analysis.torque_field(model)
+    monkeypatch.setattr(torque_stress, "twisted_part", lambda _: twisted)
+    field = torque_stress.torque_field(model)
     assert field.left_out == "its fillets"
     assert not field.peak.left_out

@@ -11,10 +11,10 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.torque_stress import torque_field
 from flexspline.results.drawings import Drawing, of_field
 from flexspline.results.pictures import RunDrawings
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
