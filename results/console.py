@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import STD_KEY
-from flexspline.results.doubt import NOT_STATED
+from flexspline.results.doubt import NOT_STATED, stated_only
 from flexspline.results.numbers import grouped
 from flexspline.results.peaks import BORDER, MEANING, marked
 from flexspline.results.quantities import QUANTITIES
@@ -45,6 +45,8 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
             at_border |= bool(border)
             mark = border or notes.get(entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
+            if entry.key == STD_KEY:
+                shown += stated_only(record.get("backlash_std_by_source_arcsec", {}))
         lines += row((entry.name, shown), (NAMES,))
     if at_border:
         lines += prose(f"“{BORDER}”: {MEANING}")

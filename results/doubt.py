@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from flexspline.pipeline.backlash import STD_KEY, Backlash
 from flexspline.results.quantities import quantity
 
@@ -15,10 +17,21 @@ NOT_STATED = "not stated"
 
 
 def spread_text(backlash: Backlash) -> str:
-    """``± 12.9 (1σ)``, or that the design file states no uncertainty."""
+    """``± 12.9 (1σ)``, of what alone where sources are left out, or that no uncertainty is stated."""
     if backlash.std_arcsec is None:
         return f"1σ {NOT_STATED}"
-    return f"± {quantity(STD_KEY).text(backlash.std_arcsec)} (1σ)"
+    only = stated_only(backlash.std_by_source_arcsec)
+    return f"± {quantity(STD_KEY).text(backlash.std_arcsec)} (1σ{only})"
+
+
+def stated_only(sources: Collection[str]) -> str:
+    """``, Young's modulus only`` where the design file leaves sources out, else "".
+
+    `sources`: those that it states.
+    """
+    if not sources or set(SOURCES) <= set(sources):
+        return ""
+    return f", {_listed(tuple(name for key, name in SOURCES.items() if key in sources))} only"
 
 
 def missing(backlash: Backlash) -> tuple[str, ...]:

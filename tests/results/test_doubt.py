@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 from hand_made_gear import content, design
@@ -47,13 +48,22 @@ def test_a_report_says_which_part_is_stated(tmp_path):
     for text in printed(PART, tmp_path):
         assert letters("with Young's modulus and bearing play not stated") in text
         assert letters("young's") not in text
-        assert letters("± 11.0 (1σ)") in text
+        assert letters("± 11.0 (1σ, flank clearance only)") in text
         assert not ZERO.search(text)
 
 
 def test_a_whole_statement_leaves_nothing_out():
     assert missing(FULL.backlash) == ()
     assert "not stated" not in spread_sentence(FULL.backlash)
+
+
+def test_a_terminal_says_which_part_is_stated():
+    for gear, said in ((PART, " arcsec, flank clearance only"), (FULL, " arcsec\n")):
+        record = {"design": "d", **backlash_record(gear.backlash)}
+        _, _, line = table(record, Path()).partition("Standard deviation of the total")
+        assert f"{gear.backlash.std_arcsec:.1f}{said}" in line.replace(
+            "\N{NARROW NO-BREAK SPACE}", " "
+        )
 
 
 def test_the_record_has_no_deviation_that_was_not_computed():
