@@ -10,6 +10,7 @@ from flexspline.geometry.check_flexspline import thickest_ring
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
+from flexspline.geometry.module_fit import fitting_module_mm
 from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 from flexspline.geometry.tooth import half_thickness, tip_radius
@@ -75,7 +76,8 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
             f.ring_thickness_mm,
             f"must be {room} mm for teeth to be drawn: the root circle, radius {f.ring_radius:.4g} mm, "
             f"must lie within the pitch circle, m z1/2 = {pitch:.4g} mm, and flanks of "
-            f"{gear.pressure_angle_deg:g}° leave a gap between teeth there",
+            f"{gear.pressure_angle_deg:g}° leave a gap between teeth there; gear.module_mm = "
+            f"{fitting_module_mm(design):.3g} puts the roots on this ring",
         )
         return
     if _land(design, radians(gear.pressure_angle_deg)) < land:

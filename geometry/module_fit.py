@@ -26,15 +26,20 @@ def diameter_in_metres(design: Design) -> tuple[float, float] | None:
     return 2 * (root / WRONG_MODULE_RATIO - outside), 2 * (root * WRONG_MODULE_RATIO - outside)
 
 
+def fitting_module_mm(design: Design) -> float:
+    """The module whose root circle is the ring's outside."""
+    return design.flexspline.ring_radius / root_radius_mm(design) * design.gear.module_mm
+
+
 def module_hint(design: Design) -> str:
     """The module, where it is far from what the rest of the ring asks for; else ""."""
     root, ring = root_radius_mm(design), design.flexspline.ring_radius
     if _fits(root, ring):
         return ""
-    fits = ring / root * design.gear.module_mm
     return (
         f"gear.module_mm = {design.gear.module_mm:g} does not belong to this ring: with "
-        f"{design.gear.teeth_flexspline} teeth on a ring of {2 * ring:.4g} mm it is {fits:.2g}"
+        f"{design.gear.teeth_flexspline} teeth on a ring of {2 * ring:.4g} mm it is "
+        f"{fitting_module_mm(design):.2g}"
     )
 
 
