@@ -22,6 +22,7 @@ from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
 from flexspline.results.limit_words import load_beyond
+from flexspline.results.numbers import figures_text
 from flexspline.results.peaks import BORDER, marked
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
@@ -202,6 +203,7 @@ def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
     angle = angle_rad(design, np.maximum(torque, 1e-9 * load), K_b, K_e) * ARCSEC_PER_RAD
     return {
         "load_Nm": load,
+        "load_text": f"{figures_text(load, 2)} N·m",
         "torque_Nm": torque.tolist(),
         "angle_arcsec": angle.tolist(),
         "spread_arcsec": band(torque, load, total).tolist(),

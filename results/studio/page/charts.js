@@ -57,7 +57,7 @@ const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
 
 // θ(T): two elastic branches, the gap between them, one standard deviation as a band.
 export function chartLine(line, budget, style, pinned, tall) {
-  const { torque_Nm: torque, angle_arcsec: angle, spread_arcsec: spread, load_Nm: load, gap_arcsec: gap } = line;
+  const { torque_Nm: torque, angle_arcsec: angle, spread_arcsec: spread, load_Nm: load, load_text: words, gap_arcsec: gap } = line;
   const H = tall && innerWidth >= 1600 && innerHeight >= 960 ? HIGH : LOW;
   const reach = Math.max(torque.at(-1), pinned ? pinned.torque_Nm.at(-1) : 0);
   const top = Math.max(...angle.map((a, i) => a + spread[i]), ...(pinned ? pinned.angle_arcsec : [])) * 1.06;
@@ -72,10 +72,9 @@ export function chartLine(line, budget, style, pinned, tall) {
         svg("text", { x: EDGE.left - 5, y: y(value) + 3.5, "text-anchor": "end" }, grouped(value, 0)));
     }
   }
-  for (const t of [-load, 0, load]) {
-    const words = t ? `${grouped(t, decimals(load))} N·m` : "0";
+  for (const [t, text] of [[-load, `\u2212${words}`], [0, "0"], [load, words]]) {
     chart.append(svg("path", { d: `M${x(t)} ${EDGE.top}V${H - EDGE.bottom}`, class: t ? "load" : "axis" }),
-      svg("text", { x: x(t), y: H - 7, "text-anchor": "middle" }, words));
+      svg("text", { x: x(t), y: H - 7, "text-anchor": "middle" }, text));
   }
   for (const sign of [-1, 1]) {
     const high = angle.map((a, i) => a + spread[i]);
@@ -106,8 +105,4 @@ export function ticks(top) {
   const decade = 10 ** Math.floor(Math.log10(top));
   const step = [0.2, 0.5, 1, 2, 5].map((s) => s * decade).find((s) => top / s <= 3);
   return Array.from({ length: Math.floor(top / step) + 1 }, (_, i) => i * step);
-}
-
-function decimals(value) {
-  return Math.max(0, 2 - Math.floor(Math.log10(value)) - 1);
 }
