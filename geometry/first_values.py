@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.listed import joined
 from flexspline.geometry.material import BEARING_STEEL, STEEL_KG_PER_M3, ElasticMaterial
+from flexspline.geometry.toml_text import quoted
 
 TomlTable = dict[str, Any]
 
@@ -106,7 +108,7 @@ def first_values(kind: str) -> TomlTable:
     DesignError : no such kind.
     """
     if kind not in _FIRST:
-        known = " or ".join(f'"{k}"' for k in _FIRST)
+        known = joined(map(quoted, _FIRST), "or")
         raise DesignError("kind", kind, f"must be {known}")
     flexspline, shaft = _FIRST[kind]
     return {

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
     Backlash,
@@ -88,7 +89,7 @@ def agreement(design: Design) -> str:
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
-        but_for = " and ".join(dict.fromkeys(words))
+        but_for = joined(dict.fromkeys(words), "and")
         return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds"
     if design.solver.model == "solid":
         return "Equals `flexspline stiffness`, there the solid model, within the bounds"
@@ -113,7 +114,7 @@ def without(name: str, design: Design) -> str:
     left = [
         word for word, is_there in (("holes", shaft.bolts), ("keyway", shaft.keyway)) if is_there
     ]
-    return f"without {' and '.join(left)}" if left else ""
+    return f"without {joined(left, 'and')}" if left else ""
 
 
 def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.results.diagnosis.channels import channel_words
@@ -89,7 +90,7 @@ def _words(hypothesis: Hypothesis, names: tuple[str, ...]) -> str:
         UNNAMED_CURVE if c.startswith("?") else title_of(c).partition(" (")[0]
         for c in hypothesis.causes
     ]
-    text = " and ".join(titles)
+    text = joined(titles, "and")
     return text if hypothesis.own is None else f"{text}, unit {names[hypothesis.own]}"
 
 
