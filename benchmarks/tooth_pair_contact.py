@@ -3,7 +3,7 @@
     pip install -e '.[bench]'
     python3 benchmarks/tooth_pair_contact.py        two minutes; writes tooth_pair_contact.json
 
-Two toothed strips in plane strain, the teeth of benchmarks/gear_contact_3d.py. Their backs slide on rigid
+Two toothed strips in plane strain, the teeth of benchmarks/gear_contact/solve.py. Their backs slide on rigid
 supports, their ends are held; one is shifted until one pair of flanks pushes. The shift, less what both
 strips stretch as bars, is what that pair yields: both teeth, their roots, the contact. The bar's stiffness is
 that of the same meshed strip, pulled. The model has no strip: below its teeth is a half plane.
@@ -17,8 +17,8 @@ from importlib.metadata import version
 from math import cos, pi, sin, sqrt, tan
 from pathlib import Path
 
-import gear_contact_3d as gear
 import ngsolve as ngs
+from gear_contact import solve as gear
 from netgen import occ
 
 from flexspline.fea.types import Elastic

@@ -15,8 +15,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-import gear_contact_stiffness as stiff
-from gear_contact_mesh import INSIDE, Part, cup
+from gear_contact import stiffness as stiff
+from gear_contact.mesh import INSIDE, Part, cup
 
 from flexspline.fea.gear.tube_buckling import Tube
 from flexspline.fea.types import Elastic

@@ -1,4 +1,4 @@
-"""The contact model beside the recorded three-dimensional one of benchmarks/gear_contact_3d.py."""
+"""The contact model beside the recorded three-dimensional one of benchmarks/gear_contact/solve.py."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from flexspline.geometry.sized import sized_template
 from flexspline.pipeline.gear import CARRYING_SHARE
 from flexspline.pipeline.gear_model import gear_model
 
-RECORD = Path(__file__).parents[1] / "benchmarks" / "gear_contact_3d.json"
-TEETH = RECORD.with_name("tooth_pair_contact.json")
+RECORD = Path(__file__).parents[1] / "benchmarks" / "gear_contact" / "record.json"
+TEETH = RECORD.parents[1] / "tooth_pair_contact.json"
 BEARINGS = ("plug", "race")
 CASES = (
     ("rigid plug, 5 places", "plug", 5),
@@ -68,7 +68,7 @@ class Beside:
 
 
 def record() -> dict[str, Any]:
-    """As benchmarks/gear_contact_3d.py wrote it."""
+    """As benchmarks/gear_contact/solve.py wrote it."""
     return json.loads(RECORD.read_text(encoding="utf-8"))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
+from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import LENGTH_mm
 
 GAP_mm = 1e-6
@@ -88,7 +89,7 @@ def beside(
         found.append(part)
     if (part := lengths(max(step_up(level, step), low), high)) is not None:
         found.append(part)
-    return joined(found)
+    return joined(found, "or")
 
 
 def outside(holes: Sequence[Interval], low: float, high: float) -> list[Interval]:
@@ -100,11 +101,6 @@ def outside(holes: Sequence[Interval], low: float, high: float) -> list[Interval
         start = max(start, b)
     left.append((start, high))
     return [(a, b) for a, b in left if a <= b]
-
-
-def joined(parts: Sequence[str]) -> str:
-    """``a, b or c``."""
-    return " or ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
 def _rounded(value: float, digits: int, up: bool) -> str:

@@ -14,7 +14,6 @@ from flexspline.geometry.bounds import (
     beside,
     from_zero,
     is_step,
-    joined,
     lengths,
     outside,
     upto,
@@ -23,6 +22,7 @@ from flexspline.geometry.check_bolts import bolt_faults
 from flexspline.geometry.check_keyway import keyway_faults
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
+from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import LENGTH_mm
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
@@ -183,7 +183,7 @@ def _grip_faults(s: Shaft, fillets_fit: bool) -> Iterator[DesignError]:
     where = f"below the shaft's length, {s.length:g} mm (sum of segment length_mm)"
     if taken:
         where += f", and not ending in a fillet_mm = {s.fillet_mm:g}"
-    yield DesignError("shaft.grip_length_mm", grip, f"must be {joined(free)} mm: {where}")
+    yield DesignError("shaft.grip_length_mm", grip, f"must be {joined(free, 'or')} mm: {where}")
 
 
 def _fillets_along(s: Shaft) -> Iterator[Interval]:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.listed import joined
 from flexspline.geometry.material import BEARING_STEEL, STEEL_KG_PER_M3, ElasticMaterial
+from flexspline.geometry.toml_text import quoted
 
 TomlTable = dict[str, Any]
 
-# The cup is that of examples/xb1-40.toml; the hat has the same tube, shorter.
+# The cup is that of examples/xb1-40.toml, which leaves out what has a default; but its shaft is 17 mm in
+# diameter where that has 18: the keyway offered is a usual one there. The hat has the same tube, shorter.
 _STEEL = {
     "name": "34CrNiMo6",
     "youngs_modulus_GPa": 206.0,
@@ -106,7 +109,7 @@ def first_values(kind: str) -> TomlTable:
     DesignError : no such kind.
     """
     if kind not in _FIRST:
-        known = " or ".join(f'"{k}"' for k in _FIRST)
+        known = joined(map(quoted, _FIRST), "or")
         raise DesignError("kind", kind, f"must be {known}")
     flexspline, shaft = _FIRST[kind]
     return {

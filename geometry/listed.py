@@ -10,6 +10,18 @@ FIRST_ENTRIES = 3
 """Entries of a longer list that are written out before its last: they show its step."""
 
 
+def joined(words: Iterable[str], last: str) -> str:
+    """All of a few, with commas between and a word before the last.
+
+    >>> joined(["bore", "boss"], "and"), joined(["1", "2", "3"], "or")
+    ('bore and boss', '1, 2 or 3')
+    """
+    every = list(words)
+    if len(every) > 1:
+        every[:-1] = [", ".join(every[:-1])]
+    return f" {last} ".join(every)
+
+
 def listed(words: Iterable[object], what: str) -> str:
     """The entries with commas between; of a long list the first and the last, and how many there are.
 

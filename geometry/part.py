@@ -8,6 +8,7 @@ from math import hypot
 from typing import Any
 
 from flexspline.geometry.bolts import BoltCircle
+from flexspline.geometry.listed import joined
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian, SAME_mm
@@ -78,7 +79,7 @@ class Part:
     def cuts(self) -> str:
         """What makes it no body of revolution, in words; empty where it is one."""
         holes, keyway = self.bolts is not None, self.keyway is not None
-        return " and ".join(["holes"] * holes + ["keyway"] * keyway)
+        return joined(["holes"] * holes + ["keyway"] * keyway, "and")
 
     @property
     def cuts_meet(self) -> bool:

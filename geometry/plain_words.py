@@ -8,10 +8,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.listed import joined
 from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.schema import Location, allowed, dotted, keys_of
 from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.toml_read import number_help
+from flexspline.geometry.toml_text import quoted
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails, ValidationError
@@ -79,7 +81,7 @@ def _of_a_key(e: ErrorDetails, data: Mapping[str, Any]) -> ErrorDetails:
 
 
 def _allowed(location: Location, kind: str | None) -> str:
-    return _or(KINDS) if location == KIND else allowed(location, kind)
+    return joined(map(quoted, KINDS), "or") if location == KIND else allowed(location, kind)
 
 
 def without_tag(location: Location) -> Location:
@@ -94,10 +96,6 @@ def kind_of(data: Mapping[str, Any]) -> str | None:
     flexspline = data.get("flexspline")
     kind = flexspline.get("kind") if isinstance(flexspline, Mapping) else None
     return kind if kind in KINDS else None
-
-
-def _or(words: Iterable[str]) -> str:
-    return " or ".join(f'"{word}"' for word in words)
 
 
 def _unknown(location: Location, kind: str | None) -> str:

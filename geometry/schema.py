@@ -6,7 +6,9 @@ from functools import cache
 from typing import Any
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import Range
+from flexspline.geometry.toml_text import quoted
 
 Location = tuple[str | int, ...]
 SchemaNode = dict[str, Any]
@@ -96,7 +98,7 @@ def allowed(location: Location, kind: str | None = None) -> str:
     """What a key may hold, in words: ``a number from 0 to 100 (%)``."""
     node = node_at(location, kind)
     if "enum" in node:
-        return " or ".join(f'"{v}"' for v in node["enum"])
+        return joined(map(quoted, node["enum"]), "or")
     if "const" in node:
         return f'"{node["const"]}"'
     if "discriminator" in node or node.get("type") == "object":

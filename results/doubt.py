@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.backlash import STD_KEY, Backlash
 from flexspline.results.quantities import quantity
 
@@ -31,7 +32,8 @@ def stated_only(sources: Collection[str]) -> str:
     """
     if not sources or set(SOURCES) <= set(sources):
         return ""
-    return f", {_listed(tuple(name for key, name in SOURCES.items() if key in sources))} only"
+    stated = [name for key, name in SOURCES.items() if key in sources]
+    return f", {joined(stated, 'and')} only"
 
 
 def missing(backlash: Backlash) -> tuple[str, ...]:
@@ -45,14 +47,10 @@ def spread_sentence(backlash: Backlash) -> str:
         return "the design file states no uncertainty, so the sum has no standard deviation"
     said = quantity(STD_KEY).with_unit(backlash.std_arcsec)
     left_out = missing(backlash)
-    without = f", with {_listed(left_out)} {NOT_STATED}" if left_out else ""
+    without = f", with {joined(left_out, 'and')} {NOT_STATED}" if left_out else ""
     return f"one standard deviation of the sum is {said}{without}"
 
 
 def as_stated(value: float, std: float, unit: str) -> str:
     """As the design file has them, not rounded: ``3 ± 1 µm``; without a standard deviation ``3 µm``."""
     return f"{value:g} ± {std:g} {unit}" if std else f"{value:g} {unit}"
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return " and ".join(names)

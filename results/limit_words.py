@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, assert_never
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
 from flexspline.results.peaks import BORDER
 
@@ -62,7 +63,7 @@ def reason(limit: LinearLimit) -> str:
             assert_never(why)
     if not limit.peaks_solved:
         return f"{said} ({NOT_SOLVED})"
-    parts = " and ".join(f"the {part}'s peak" for part in limit.not_counted)
+    parts = joined((f"the {part}'s peak" for part in limit.not_counted), "and")
     return f"{said} ({parts}, {BORDER}, not counted)" if parts else said
 
 

@@ -14,7 +14,7 @@ def grouped(value: float, decimals: int) -> str:
     """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
     text = f"{abs(value):,.{decimals}f}"
     whole, point, rest = text.partition(".")
-    whole = whole.replace(",", "") if abs(value) < 9999.5 else whole.replace(",", THIN)
+    whole = whole.replace(",", THIN if len(whole) > len("9,999") else "")
     negative = value < 0 and float(f"{abs(value):.{decimals}f}") > 0
     return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
 

@@ -20,23 +20,11 @@ def bounds_kind(guaranteed: bool) -> str:
     return "guaranteed" if guaranteed else "estimated"
 
 
-def _stiffness(
-    key: str, digits: int, symbol: str, name: str, short_name: str, bounded: str, note: str
-) -> tuple[Quantity, Quantity]:
-    """A stiffness and its bounds."""
-    value, bounds = f"{key}_Nm_per_rad", f"{key}_bounds_Nm_per_rad"
-    return (
-        Quantity(
-            value,
-            STIFFNESS_UNIT,
-            name,
-            symbol,
-            digits=digits,
-            note=note,
-            short_name=short_name,
-        ),
-        Quantity(bounds, STIFFNESS_UNIT, f"Bounds of the {bounded}", symbol, "bounds", digits),
-    )
+def _with_bounds(value: Quantity, of: str) -> tuple[Quantity, Quantity]:
+    """A stiffness and its bounds, "Bounds of the …"."""
+    key = value.key.replace("_Nm_per_rad", "_bounds_Nm_per_rad")
+    name = f"Bounds of the {of}"
+    return value, Quantity(key, value.unit, name, value.symbol, "bounds", value.digits)
 
 
 _RIM_WORDS: Mapping[RimCase, tuple[str, str, str, str, str]] = {
@@ -62,7 +50,7 @@ _RIM_WORDS: Mapping[RimCase, tuple[str, str, str, str, str]] = {
         "same traction, nothing on the seat",
     ),
 }
-"""As of `_stiffness`, from its symbol on: of load cases that have more to say than their title."""
+"""Symbol, name, short name, what its bounds are of, note: of load cases with more to say than their title."""
 
 
 def _of_rim_case(case: RimCase) -> tuple[Quantity, Quantity]:
@@ -70,30 +58,40 @@ def _of_rim_case(case: RimCase) -> tuple[Quantity, Quantity]:
     title, index = RIM_CASES[case].title, case.replace("_", " ")
     name = f"Flexspline stiffness, {title}"
     usual = (f"K_b,{index}", name, title, name[0].lower() + name[1:], "")
-    return _stiffness(figure_of(case), 4, *_RIM_WORDS.get(case, usual))
+    symbol, name, short, of, note = _RIM_WORDS.get(case, usual)
+    key = f"{figure_of(case)}_Nm_per_rad"
+    return _with_bounds(
+        Quantity(key, STIFFNESS_UNIT, name, symbol, note=note, short_name=short), of
+    )
 
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("design", "", "Design", kind="text"),
     Quantity("version", "", "Program version", kind="text"),
-    *_stiffness(
-        "K_b",
-        5,
-        "K_b",
-        "Flexspline stiffness, uniform torque on the ring",
-        "flexspline, uniform",
+    *_with_bounds(
+        Quantity(
+            "K_b_Nm_per_rad",
+            STIFFNESS_UNIT,
+            "Flexspline stiffness, uniform torque on the ring",
+            "K_b",
+            digits=5,
+            note="ring turned rigidly, mount held",
+            short_name="flexspline, uniform",
+        ),
         "flexspline stiffness (uniform)",
-        "ring turned rigidly, mount held",
     ),
     *chain.from_iterable(map(_of_rim_case, RIM_CASES)),
-    *_stiffness(
-        "K_e",
-        5,
-        "K_e",
-        "Output shaft stiffness",
-        "output shaft",
+    *_with_bounds(
+        Quantity(
+            "K_e_Nm_per_rad",
+            STIFFNESS_UNIT,
+            "Output shaft stiffness",
+            "K_e",
+            digits=5,
+            note="grip turned rigidly, mount held",
+            short_name="output shaft",
+        ),
         "output shaft stiffness",
-        "grip turned rigidly, mount held",
     ),
     Quantity(
         "given.K_b_Nm_per_rad", STIFFNESS_UNIT, "Flexspline stiffness, given", "K_b", digits=5

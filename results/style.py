@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,11 +22,43 @@ INK = "#1f2429"
 MUTED = "#6b747d"
 RULE = "#c9ced3"
 STEEL = "#cfd6dc"
+LIGHT = "#dfe3e7"
+"""Of bars that stand back, and of thin lines between panels."""
+GRID = "#e4e7ea"
+TINT = "#f1f4f7"
+"""Behind words."""
+SMALL_PRINT = "#5a636c"
+"""`MUTED` for words on `TINT`, where that is too pale to read."""
 
 # Four lightness steps (L* about 25, 47, 65, 84), hues apart on the blue-yellow axis that red-green
 # blindness leaves intact.
 PALETTE = ("#123f66", "#2f7ab8", "#dd8f2d", "#f5d38a")
 ACCENT = "#b3371f"
+
+REPORT_COLOURS: Mapping[str, str] = {
+    "ink": INK,
+    "muted": SMALL_PRINT,
+    "rule": RULE,
+    "tint": TINT,
+    "blue": PALETTE[0],
+    "amber": PALETTE[2],
+    "pale-amber": "#fdf6ea",
+    "red": ACCENT,
+    "mark": ACCENT,
+    "flag": INK,
+}
+"""Colours of a report by the names that its two templates use, PDF and HTML. Where a page is dark it has
+others, but for the mark at a peak and its flag.
+"""
+STUDIO_COLOURS: Mapping[str, str] = {
+    "ink": INK,
+    "muted": MUTED,
+    "rule": LIGHT,
+    "strong": PALETTE[0],
+    "accent": PALETTE[1],
+    "bad": ACCENT,
+}
+"""Colours of the studio's page by the names that its style sheets use."""
 
 DPI = 200
 """Dots per inch: charts of 8 in have 1600 pixels, 190 to the inch across a whole A4 page."""
@@ -44,7 +77,7 @@ _RC: dict[str, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.axisbelow": True,
-    "grid.color": "#e4e7ea",
+    "grid.color": GRID,
     "grid.linewidth": 0.8,
     "text.color": INK,
     "xtick.color": MUTED,
@@ -57,6 +90,11 @@ _RC: dict[str, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
 }
+
+
+def as_css(colours: Mapping[str, str]) -> str:
+    """Colours as variables of a style sheet."""
+    return f":root {{ {' '.join(f'--{name}: {value};' for name, value in colours.items())} }}\n"
 
 
 def colour_scale() -> list[int]:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import typer
 from typer.core import TyperGroup
 
+from flexspline.geometry.listed import joined
 from flexspline.results.exit_status import FAILED, REFUSED
 from flexspline.results.job import tell
 
@@ -89,4 +90,4 @@ def one_of(*words: str) -> Callable[[str], str]:
             raise ValueError
         return text
 
-    return _reader(chosen, " or ".join(words))
+    return _reader(chosen, joined(words, "or"))

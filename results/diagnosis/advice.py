@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
@@ -175,4 +176,4 @@ def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
 
 def _one_from_others(titles: Sequence[str]) -> str:
     first, *others = titles
-    return f"{first} from {' or '.join(others)}"
+    return f"{first} from {joined(others, 'or')}"

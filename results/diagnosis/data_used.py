@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -91,7 +92,7 @@ def calibrated_sentences(
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
     if elastic and calibration.compliance is not None:
-        titles = " and ".join(title_of(c.id, c.magnitude) for c in elastic)
+        titles = joined((title_of(c.id, c.magnitude) for c in elastic), "and")
         said += f" The measured slope is this compliance and the effect of: {titles}."
     if calibration.gap_arcsec.value < 0:
         said += " No gap is negative: this model is not that of the record, or a reading is wrong."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import one_line
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.model.design_digest import changed_tables
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
@@ -38,7 +39,7 @@ def _left_open(file: ModelFile) -> tuple[str, ...]:
     if file.provenance.verdict != "ambiguous":
         return ()
     rivals = "; ".join(
-        f"{title_of(cause)} or {' or '.join(map(title_of, others))}"
+        joined(map(title_of, (cause, *others)), "or")
         for cause, others in file.alternatives.items()
         if others
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
+from flexspline.geometry.listed import joined
 from flexspline.geometry.percent import percent
 from flexspline.pipeline.diagnosis.absurd_size import slope_words
 from flexspline.pipeline.diagnosis.outcome import Unexplained
@@ -150,7 +151,7 @@ def _backward(loop: BackwardLoop) -> str:
         "while torque falls than while it rises, so that the loop would release energy, which a passive gear "
         f"cannot; most likely {_likely(loop)}"
     )
-    others = " and ".join(UNRECORDED[channel] for channel in loop.unrecorded)
+    others = joined((UNRECORDED[channel] for channel in loop.unrecorded), "and")
     return f"{said}. Other possible causes, not recorded: {others}" if others else said
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexspline.geometry.listed import listed
+from flexspline.geometry.listed import joined, listed
 from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS, FarOff
 from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -160,7 +160,7 @@ def _said(cause: NamedCause, only: str) -> str:
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
     told = [
-        f"{cause_title(c)} cannot be distinguished from {' or '.join(map(title_of, c.alternatives))}"
+        f"{cause_title(c)} cannot be distinguished from {joined(map(title_of, c.alternatives), 'or')}"
         for c in causes
         if c.alternatives
     ]

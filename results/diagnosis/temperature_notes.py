@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
@@ -16,7 +17,7 @@ def lag_notes(identified: Identification) -> list[str]:
     lag = thermal_lag(identified)
     if lag is None:
         return []
-    times = " and ".join(f"{s:.3g}" for s in lag.lags_s)
+    times = joined((f"{s:.3g}" for s in lag.lags_s), "and")
     said = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
     if lag.stages > 1:
         said += ", twice in a row"

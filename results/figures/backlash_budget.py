@@ -13,7 +13,16 @@ from flexspline.results.doubt import NOT_STATED, SOURCES
 from flexspline.results.figures.chart import Chart
 from flexspline.results.figures.words import angle_title, fit, wrapped
 from flexspline.results.quantities import quantity
-from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.results.style import (
+    ACCENT,
+    INK,
+    LIGHT,
+    MUTED,
+    PALETTE,
+    new_figure,
+    save_png,
+    styled,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +30,6 @@ if TYPE_CHECKING:
     from flexspline.results.report.content import ReportContent
 
 ADDED = "#b9a3cf"
-SUM = "#dfe3e7"
 CALIBRATION = "Calibration by measurement"
 ROW, ABOVE, BELOW = 0.62, 0.52, 0.62
 """Inches: of a row of the waterfall, above the rows and below them."""
@@ -90,7 +98,7 @@ def _simulated(backlash: Backlash, more: bool) -> list[BudgetBar]:
     entry, std = quantity("backlash_arcsec.total"), backlash.std_arcsec
     spread = "" if std is None else f"\n± {entry.short(std)}"
     name = ("Simulated" if more else "Backlash") + (" ± 1σ" if spread else "")
-    rows.append(BudgetBar(name, 0.0, total, SUM, f"{entry.short(total)}{spread}", is_sum=True))
+    rows.append(BudgetBar(name, 0.0, total, LIGHT, f"{entry.short(total)}{spread}", is_sum=True))
     return rows
 
 
@@ -103,7 +111,7 @@ def _measured(extended: ExtendedBacklash) -> list[BudgetBar]:
         name = cause.replace("_", " ").capitalize()
         rows.append(BudgetBar(name, start, size, ADDED, f"{plus}{entry.short(size)}"))
         start += size
-    rows.append(BudgetBar("Extended", 0.0, start, SUM, entry.short(start), is_sum=True))
+    rows.append(BudgetBar("Extended", 0.0, start, LIGHT, entry.short(start), is_sum=True))
     return rows
 
 

@@ -3,7 +3,6 @@
 import { OrbitControls } from "./OrbitControls.js";
 import * as THREE from "./three.module.min.js";
 
-const STEEL = 0xaeb7bf;
 const HALF_OF_FULL = 0.5 * Math.PI; // half of what shows a matt surface in its own colour
 const STEEPEST = Math.PI / 2 - 1e-3; // at the pole "up" has no direction
 const BACK = { side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }; // or it would swallow lines on it
@@ -22,8 +21,7 @@ export class PartScene {
     this.camera.add(lamp, lamp.target);
     this.scene = new THREE.Scene();
     this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, HALF_OF_FULL));
-    this.coloured = new THREE.MeshLambertMaterial({ map: texture(scale), ...BACK });
-    this.plain = new THREE.MeshLambertMaterial({ color: STEEL, ...BACK });
+    this.coloured = this.matt({ map: texture(scale) });
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     Object.assign(this.controls, { enableDamping: true, dampingFactor: 0.12 });
     this.controls.addEventListener("change", () => this.draw());
@@ -42,6 +40,10 @@ export class PartScene {
   // Pairs of points as lines, drawn as `lineOf` says.
   addLines({ position, index }, line) {
     return this.add(new THREE.LineSegments(geometry(position, index), line));
+  }
+
+  matt(settings) {
+    return new THREE.MeshLambertMaterial({ ...settings, ...BACK });
   }
 
   lineOf(color, opacity = 1) {

@@ -74,7 +74,7 @@ def write_sheet(path: Path, main: Shot, inset: Shot, sheet: Sheet) -> None:
         figure = new_figure(WIDTH / _DPI, HEIGHT / _DPI, _DPI)
         _image(figure, main, _MAIN_AT)
         _image(figure, inset, _INSET_AT)
-        _say(figure, (44, 1140), sheet.title, _TITLE, INK, "bold")
+        _say(figure, (44, 1140), sheet.title, _TITLE, INK, weight="bold")
         _say(figure, (44, 1082), sheet.subtitle, _SUBTITLE, MUTED)
         _say(figure, (44, 28), sheet.note, _NOTE, MUTED)
         middle = _INSET_AT[0] + inset.image.shape[1] / 2
@@ -112,25 +112,19 @@ def _image(figure: Figure, shot: Shot, at: tuple[int, int]) -> None:
 
 
 def _say(
-    figure: Figure,
-    at: tuple[float, float],
-    text: str,
-    size: int,
-    colour: str,
-    weight: str = "normal",
-    ha: str = "left",
+    figure: Figure, at: tuple[float, float], text: str, size: int, colour: str, **look: Any
 ) -> None:
+    """Words with their lower left at a pixel; `look`: of matplotlib's text."""
     figure.text(
         at[0] / WIDTH,
         at[1] / HEIGHT,
         text,
         fontsize=_pt(size),
         color=colour,
-        weight=weight,
-        ha=ha,
         va="bottom" if "\n" in text else "baseline",
         linespacing=1.2,
         parse_math=False,
+        **look,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -104,7 +105,7 @@ def _what_counts(p: Prediction) -> str:
     ]
     if not missing:
         return "A stiffness or gap that differs within these limits is not a finding."
-    return f"No uncertainty of {' or '.join(missing)} is stated, so any difference beyond the noise counts."
+    return f"No uncertainty of {joined(missing, 'or')} is stated, so any difference beyond the noise counts."
 
 
 def _compared_specimens(diagnosis: Diagnosis, used: StiffnessPair) -> str:

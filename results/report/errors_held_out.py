@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from flexspline.geometry.percent import percent_of_all
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import calibrated_words, noise_words
@@ -27,7 +28,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
     if found and share > 0:
         yield Paragraph(
-            f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
+            f"The causes found explain {percent_of_all(share)} of the mean square error above "
             "the noise floor."
         )
 
@@ -62,10 +63,3 @@ def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     if found:
         yield "With the causes found", gain.rmse_after
     yield f"{capital(noise_words(gain))}, the least to expect", gain.noise_floor
-
-
-def _percent(share: float) -> str:
-    """Never rounded up to all: 99.97 % is 99.9 %."""
-    if share >= 1:
-        return "100"
-    return f"{int(1000 * share) / 10:.1f}" if share > 0.99 else f"{100 * share:.0f}"

@@ -20,7 +20,7 @@ from flexspline.geometry.errors import readable
 from flexspline.results.page_3d.script import in_function, script_3d
 from flexspline.results.report.document import Document
 from flexspline.results.report.payload import payload_of
-from flexspline.results.style import colour_scale
+from flexspline.results.style import REPORT_COLOURS, as_css, colour_scale
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -71,7 +71,7 @@ def page_of(
 
     # sorted: they are drawn side by side, and come in the order in which they are ready
     found: dict[str, dict[str, Any]] = {n: json.loads(v) for n, v in sorted((views or {}).items())}
-    script, style = _script() if found else "", _file(STYLE)
+    script, style = _script() if found else "", as_css(REPORT_COLOURS) + _file(STYLE)
     shown = {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()}
     text = (
         _environment()

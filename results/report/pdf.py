@@ -13,6 +13,7 @@ from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.report.document import Document
 from flexspline.results.report.missing_letters import font_folder, notice, printable
 from flexspline.results.report.payload import payload_of
+from flexspline.results.style import REPORT_COLOURS
 
 TEMPLATE = "document.typ"
 
@@ -51,7 +52,7 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
             return typst.compile(
                 str(root / TEMPLATE),
                 root=str(root),
-                sys_inputs={"report": readable(report)},
+                sys_inputs={"report": readable(report), "colours": json.dumps(REPORT_COLOURS)},
                 font_paths=[str(font_folder())],
                 timestamp=0,  # else the same content would give another file each time
             )

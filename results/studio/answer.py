@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
     Backlash,
@@ -22,6 +23,7 @@ from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
 from flexspline.results.limit_words import load_beyond
+from flexspline.results.numbers import figures_text
 from flexspline.results.peaks import BORDER, marked
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
@@ -87,7 +89,7 @@ def agreement(design: Design) -> str:
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
-        but_for = " and ".join(dict.fromkeys(words))
+        but_for = joined(dict.fromkeys(words), "and")
         return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds"
     if design.solver.model == "solid":
         return "Equals `flexspline stiffness`, there the solid model, within the bounds"
@@ -112,7 +114,7 @@ def without(name: str, design: Design) -> str:
     left = [
         word for word, is_there in (("holes", shaft.bolts), ("keyway", shaft.keyway)) if is_there
     ]
-    return f"without {' and '.join(left)}" if left else ""
+    return f"without {joined(left, 'and')}" if left else ""
 
 
 def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:
@@ -202,6 +204,7 @@ def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
     angle = angle_rad(design, np.maximum(torque, 1e-9 * load), K_b, K_e) * ARCSEC_PER_RAD
     return {
         "load_Nm": load,
+        "load_text": f"{figures_text(load, 2)} N·m",
         "torque_Nm": torque.tolist(),
         "angle_arcsec": angle.tolist(),
         "spread_arcsec": band(torque, load, total).tolist(),

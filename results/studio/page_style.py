@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.geometry.shapes import KINDS
 from flexspline.pipeline.stress_limits import StressCase
-from flexspline.results.style import ACCENT, PALETTE, colour_scale
+from flexspline.results.style import ACCENT, INK, PALETTE, STEEL, colour_scale
 
 VIEW_TITLES: Mapping[StressCase, str] = {
     "wave_generator": "On the wave generator",
@@ -19,11 +19,13 @@ VIEW_TITLES: Mapping[StressCase, str] = {
 
 @cache
 def page_style() -> dict[str, Any]:
-    """Kinds; views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
+    """Kinds; views by name, in order; colours as hex; the stress scale as 256 colours of three bytes each."""
     return {
         "kinds": list(KINDS),
         "views": dict(VIEW_TITLES),
         "palette": list(PALETTE),
         "accent": ACCENT,
+        "ink": INK,
+        "steel": STEEL,
         "scale": colour_scale(),
     }

@@ -23,6 +23,7 @@ from flexspline.results.studio.jobs import SERVED
 from flexspline.results.studio.page_style import page_style
 from flexspline.results.studio.session import Session
 from flexspline.results.studio.tab import StudioWorkers
+from flexspline.results.style import STUDIO_COLOURS, as_css
 
 LARGEST_MESSAGE = 2 * LARGEST_TOML_BYTES
 """A design as JSON is at most a little larger than as TOML."""
@@ -72,7 +73,7 @@ async def _workers(app: web.Application) -> AsyncIterator[None]:
 
 def _page() -> dict[str, tuple[bytes, str]]:
     """Every file of the page by name, read once: a request picks from these and reads no disk."""
-    found = {}
+    found = {"colours.css": (as_css(STUDIO_COLOURS).encode(), "text/css")}
     shared = files("flexspline.results.page_3d")
     for folder in (files("flexspline.results.studio") / "page", shared, shared / "vendor"):
         for entry in folder.iterdir():

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.geometry.outline import SAME_mm
+from flexspline.results.numbers import decimals_for, grouped
 from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.picture_elements import magnification
 from flexspline.results.renders.surface import FOUR_TRIANGLES
@@ -15,6 +16,8 @@ PLACE = 2e-4
 """Of the part's size: a fifth of a pixel where it fills a thousand."""
 COLOUR = 0.01
 """Of the colour scale, and of the largest displacement: two of 256 colours."""
+TICKS = 4
+"""Of the colour scale, beside 0."""
 
 
 def field_message(view: str, field: RevolvedField) -> bytes:
@@ -33,6 +36,7 @@ def field_message(view: str, field: RevolvedField) -> bytes:
         "view": view,
         "n": field.n,
         "peak_MPa": field.peak.mises_MPa,
+        "ticks_MPa": _ticks(field.peak.mises_MPa),
         "peak_at_mm": list(field.peak.at_mm),
         "excluded": field.peak.excluded,
         "magnification": magnification(largest, size),
@@ -46,6 +50,12 @@ def field_message(view: str, field: RevolvedField) -> bytes:
         "rim": simplified(_rim(field.places, cells), _seen(field, around, size)),
     }
     return packed(head, arrays)
+
+
+def _ticks(peak: float) -> list[str]:
+    """What stands beside the colour scale, from its upper end to 0."""
+    places = decimals_for(peak, 3)
+    return [grouped(peak * i / TICKS, places) for i in range(TICKS, -1, -1)]
 
 
 def _seen(field: RevolvedField, around: list[np.ndarray], size: float) -> np.ndarray:

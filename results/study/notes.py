@@ -8,15 +8,15 @@ from math import inf
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
+from flexspline.geometry.listed import joined
 from flexspline.geometry.part_name import PART_NAMES
-from flexspline.geometry.percent import percent
+from flexspline.geometry.percent import percent, percent_change
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT, PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_WIDTH, STUDY_TORSION_WIDTH
 from flexspline.pipeline.study.figures import stiffness_keys
 from flexspline.pipeline.study.holes import HOLE_EFFECT_DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.sentences import sentence
 from flexspline.results.study.design_table import MARK, marked_figures
@@ -99,7 +99,7 @@ def _used(result: StudyResult, key: str) -> str:
     """Whether a figure is an objective or a constraint of the study; "" for neither."""
     file = result.study.file
     roles = (("an objective", [*file.objective]), ("a constraint", [*file.constraint]))
-    said = " and ".join(role for role, keys in roles if key in keys)
+    said = joined((role for role, keys in roles if key in keys), "and")
     return f"{said} of this study" if said else ""
 
 
@@ -208,15 +208,10 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
         return
     moved = drifts(result.study.keys)
     share = f" and by {100 * HOLE_EFFECT_DRIFT:g} % of the correction" if moved else ""
-    ends = list(dict.fromkeys(_percent(100 * (f - 1)) for f in (max(factors), min(factors))))
+    ends = list(dict.fromkeys(percent_change(f - 1) for f in (max(factors), min(factors))))
     yield (
         f"Holes and keyway change K_e by {' to '.join(ends)}: the same share of the flange's and the "
         "keyway's own compliance as in the design that the study began with (one solid solve). Bounds of "
         "K_e are widened "
         f"by what both solves leave open{share}, and are estimates."
     )
-
-
-def _percent(value: float) -> str:
-    least = 0.05  # less is 0.0 in print
-    return f"{signed(value, 1)} %" if abs(value) >= least else f"less than {least:g} %"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexspline.geometry.listed import listed
+from flexspline.geometry.listed import joined, listed
 from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
 from flexspline.pipeline.study.influence import (
     OpenEnd,
@@ -59,7 +59,7 @@ def allowed(key: str, limit: Limit) -> str:
     """What a constraint allows, in words: at least, at most."""
     q = entry(key)
     ends = ((limit.min, "at least"), (limit.max, "at most"))
-    return " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
+    return joined((f"{word} {q.with_unit(end)}" for end, word in ends if end is not None), "and")
 
 
 def limits(result: StudyResult) -> list[str]:

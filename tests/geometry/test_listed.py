@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexspline.geometry.listed import FIRST_ENTRIES, MOST_ENTRIES, listed
+from flexspline.geometry.listed import FIRST_ENTRIES, MOST_ENTRIES, joined, listed
 
 
 def test_a_few_are_all_listed() -> None:
@@ -13,3 +13,7 @@ def test_a_few_are_all_listed() -> None:
 def test_many_are_counted() -> None:
     assert listed(range(1, 193), "cycles") == "1, 2, 3, … 192 (192 cycles)"
     assert listed("abcdefghi", "units").count(",") == FIRST_ENTRIES
+
+
+def test_few_words_end_in_a_word() -> None:
+    assert [joined("abc"[:n], "or") for n in range(4)] == ["", "a", "a or b", "a, b or c"]

@@ -7,9 +7,10 @@ import re
 import tomllib
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.load import design_from
+from flexspline.geometry.load import design_from, load_design
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.schema import json_schema, resolved
 from flexspline.geometry.shapes import KINDS
@@ -32,6 +33,18 @@ def test_template_loads_without_a_warning(kind: str) -> None:
     design = design_from(tomllib.loads(template(kind)))
     assert design.flexspline.kind == kind
     assert warnings(design) == ()
+
+
+def test_the_first_cup_is_the_example_but_for_the_shafts_diameter() -> None:
+    first = design_from(tomllib.loads(template("cup")))
+    example = load_design(EXAMPLES / "xb1-40.toml").changed(
+        {
+            "name": first.name,
+            "shaft.segment[1].outer_diameter_mm": 17.0,
+            "material.flexspline.density_kg_per_m3": 7850.0,  # said to be steel's where not stated
+        }
+    )
+    assert example.tables == first.tables
 
 
 @pytest.mark.parametrize("kind", KINDS)

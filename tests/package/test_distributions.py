@@ -56,9 +56,7 @@ def test_wheel_says_what_it_needs_and_offers(wheel: zipfile.ZipFile) -> None:
     meta = message_from_string(wheel.read(f"{info}/METADATA").decode())
     assert meta["Name"] == "flexspline"
     assert meta["License-Expression"] == "MIT"
-    assert {"studio", "hdf5", "parquet", "bench", "docs", "test"} == set(
-        meta.get_all("Provides-Extra")
-    )
+    assert {"hdf5", "parquet", "bench", "docs", "test"} == set(meta.get_all("Provides-Extra"))
     needed = [n for n in meta.get_all("Requires-Dist") if "extra ==" not in n]
     assert all(">=" in n for n in needed)  # each with the lowest version that was tried
     assert not [n for n in needed if n.startswith("ngsolve")]  # LGPL: for the benchmarks only

@@ -35,7 +35,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run([sys.executable, "-m", "venv", str(folder / "venv")], check=True)
     programs = folder / "venv" / "bin"
     subprocess.run(
-        [str(programs / "python"), "-m", "pip", "install", "-q", f"{wheel}[studio,bench]"],
+        [str(programs / "python"), "-m", "pip", "install", "-q", f"{wheel}[bench]"],
         check=True,
     )
     return programs

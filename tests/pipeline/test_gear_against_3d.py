@@ -1,6 +1,6 @@
 """The whole gear's contact model against the recorded three-dimensional one, another program's stiffness.
 
-benchmarks/gear_contact_3d.py made the record: bricks of CalculiX instead of harmonics, Gauss points of the
+benchmarks/gear_contact/solve.py made the record: bricks of CalculiX instead of harmonics, Gauss points of the
 seat instead of places, least squares instead of an interior point method. Gaps of the unloaded flanks and the
 compliance of a pair of teeth and of a ball are the same in both.
 """

@@ -14,7 +14,7 @@ from flexspline.pipeline.rim_case import RIM_CASES, LoadCase
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.study.figures import FIGURES as STUDIED
 from flexspline.results import quantities
-from flexspline.results.numbers import THIN, beyond, grouped
+from flexspline.results.numbers import THIN, beyond
 from flexspline.results.quantities import QUANTITIES, quantity
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contract.md").read_text(encoding="utf-8")
@@ -80,20 +80,6 @@ def test_keys_carry_their_unit():
 def test_unknown_key_is_refused():
     with pytest.raises(KeyError):
         quantity("K_c_Nm_per_rad")
-
-
-@pytest.mark.parametrize(
-    ("value", "decimals", "text"),
-    [
-        (44712.34, 0, f"44{THIN}712"),
-        (9999.4, 0, "9999"),
-        (1234567.0, 1, f"1{THIN}234{THIN}567.0"),
-        (-3.25, 1, "−3.2"),
-        (-0.04, 1, "0.0"),
-    ],
-)
-def test_grouping(value, decimals, text):
-    assert grouped(value, decimals) == text
 
 
 def test_significant_digits_and_units():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
+from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
@@ -56,7 +57,7 @@ def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColum
     chosen = _chosen(grid)
     counted = [grid.head[at] for at, name in chosen if name.unit == COUNTS]
     if counts_per_turn is not None and len(counted) != 1:
-        many = f"both {' and '.join(counted)} are counts" if counted else "no column has counts"
+        many = f"both {joined(counted, 'and')} are counts" if counted else "no column has counts"
         reason = f"--counts-per-turn is of one column in counts; here {many}"
         raise MeasurementError(grid.path, grid.head_line, reason)
     return tuple(_read(grid, at, name, counts_per_turn) for at, name in chosen)
@@ -121,7 +122,7 @@ def _one(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> tuple[int, Col
     if not meant:
         return None
     if len(meant) > 1:
-        fits = " and ".join(f'"{grid.head[at]}"' for at, _ in meant)
+        fits = joined((f'"{grid.head[at]}"' for at, _ in meant), "and")
         reason = f"columns {fits} both fit {quantity}; name the one that is meant {_name(quantity)}"
         raise MeasurementError(grid.path, grid.head_line, reason)
     return meant[0]

@@ -6,6 +6,7 @@ import codecs
 from dataclasses import dataclass
 from pathlib import Path
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 
 MARKS = (
@@ -83,7 +84,7 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
             unread = max(unread, error.start)
     if not found:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
-        known = " or ".join(SINGLE_BYTE)
+        known = joined(SINGLE_BYTE, "or")
         reason = f"byte {byte:#04x} is not text in UTF-8, {known}; save the file as UTF-8"
         raise MeasurementError(path, line, reason)
     return tuple(found)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -45,8 +46,8 @@ def fault_of(cause: Cause, shape: Shape, amplitudes: int) -> str | None:
     names, fixed = _known(cause)
     given = frozenset(shape)
     if given not in names:
-        listed = " or ".join("{" + ", ".join(sorted(n)) + "}" for n in sorted(names, key=len))
-        return f"has the parameters {{{', '.join(sorted(given))}}}; it takes {listed}"
+        known = joined(("{" + ", ".join(sorted(n)) + "}" for n in sorted(names, key=len)), "or")
+        return f"has the parameters {{{', '.join(sorted(given))}}}; it takes {known}"
     for name, values in fixed.items():
         if name in shape and shape[name] not in values:
             return f"has {name} = {shape[name]:g}; it takes {', '.join(f'{v:g}' for v in sorted(values))}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.results.figures.diagnosis.seen import PlotChannel, SweepPictureData, thinned
 from flexspline.results.figures.words import angle_title, thin_labels
-from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.results.style import GRID, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -118,7 +118,7 @@ def _branch_legend(figure: Figure, shown: SweepPictureData) -> None:
             Line2D([], [], color=MUTED, lw=1.8, ls=(0, (2.5, 1.5)), label="mean, T < 0"),
         ]
     noise = f"noise of all rows used:\n± 2σ, σ = {shown.noise_arcsec:.2g} arcsec"
-    handles.append(Patch(color="#e4e7ea", label=noise))
+    handles.append(Patch(color=GRID, label=noise))
     panel_legend(figure, handles, handlelength=1.7)
 
 
@@ -126,7 +126,7 @@ def _panel(
     axes: Axes, shown: SweepPictureData, channel: PlotChannel, left: np.ndarray, high: float
 ) -> None:
     noise = 2 * shown.noise_arcsec
-    axes.axhspan(-noise, noise, color="#e4e7ea", lw=0, zorder=0)
+    axes.axhspan(-noise, noise, color=GRID, lw=0, zorder=0)
     axes.axhline(0, color=MUTED, lw=0.8)
     values = channel.values
     levels = np.unique(values)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.results.diagnosis.channels import channel_words
@@ -13,7 +14,7 @@ from flexspline.results.diagnosis.words import title_of
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.numbers import figures_text
-from flexspline.results.style import INK, PALETTE, new_figure, save_png, styled
+from flexspline.results.style import INK, LIGHT, PALETTE, new_figure, save_png, styled
 
 MOST_RIVALS = 8
 """Explanations drawn: with all plans and 0.36 inch a row, 6.5 inches; the shares are of those."""
@@ -40,7 +41,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
         share /= share.sum()
         axes.barh(
             range(len(ranked)), 100 * share, height=0.6,
-            color=[PALETTE[1] if h.causes else "#dfe3e7" for h in ranked], edgecolor=INK, lw=0.6,
+            color=[PALETTE[1] if h.causes else LIGHT for h in ranked], edgecolor=INK, lw=0.6,
         )  # fmt: skip
         for row, value in enumerate(share):
             axes.annotate(
@@ -89,7 +90,7 @@ def _words(hypothesis: Hypothesis, names: tuple[str, ...]) -> str:
         UNNAMED_CURVE if c.startswith("?") else title_of(c).partition(" (")[0]
         for c in hypothesis.causes
     ]
-    text = " and ".join(titles)
+    text = joined(titles, "and")
     return text if hypothesis.own is None else f"{text}, unit {names[hypothesis.own]}"
 
 

@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.results.figures.diagnosis.held_out import before_and_after
 from flexspline.results.figures.diagnosis.panels import DPI, panel_legend, panel_sheet, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.results.style import GRID, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +84,7 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
         bars = figure.add_axes((0.715, 0.185, 0.265, 0.62))
         x = np.arange(n)
         noise = 100 * rms(found.noise)
-        axes.axhspan(-2 * noise, 2 * noise, color="#e4e7ea", lw=0, label="noise ± 2σ")
+        axes.axhspan(-2 * noise, 2 * noise, color=GRID, lw=0, label="noise ± 2σ")
         axes.axhline(0, color=MUTED, lw=0.8)
         for values, words, colour in (
             (found.held_out_before, "simulation as it stands", PALETTE[2]),

@@ -1,11 +1,7 @@
 // The whole gear: its figures, who yields how much, and its curve.
 
-import { differenceCell, dot, ticks } from "./charts.js";
-import { el, grouped, svg, symbol } from "./dom.js";
-
-const W = 400;
-const H = 126;
-const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
+import { differenceCell, dot, frame, stack } from "./charts.js";
+import { el, svg, symbol } from "./dom.js";
 
 export function gearPanel(gear, pinned) {
   const rows = gear.rows.map((row) => {
@@ -19,7 +15,7 @@ export function gearPanel(gear, pinned) {
   return [
     el("table", {}, el("tbody", {}, ...rows)),
     shares(gear.shares),
-    gear.line ? curve(gear, pinned?.line) : null,
+    gear.line ? whole(gear, pinned?.line) : null,
     ...gear.warnings.map((line) => el("p", { class: "fault" }, `${line}.`)),
     gear.assumed.length ? el("p", { class: "limit" }, `Assumed, as the design does not state it: ${gear.assumed.join(", ")}.`) : null,
   ].filter(Boolean);
@@ -27,37 +23,25 @@ export function gearPanel(gear, pinned) {
 
 function shares(parts) {
   const words = parts.map((part) => `${part.name} ${Math.round(100 * part.value)} %`).join(", ");
-  const bar = svg("svg", { viewBox: "0 0 100 7", preserveAspectRatio: "none", class: "stack", role: "img", "aria-label": `Compliance: ${words}` });
-  let from = 0;
-  for (const part of parts) {
-    bar.append(svg("rect", { x: from, y: 0.5, width: 100 * part.value, height: 6, fill: part.colour }));
-    from += 100 * part.value;
-  }
   const names = parts.map((part) => el("span", { class: "share" }, dot(part.colour), ` ${part.name} ${Math.round(100 * part.value)} % `));
-  return el("div", { class: "budget" }, bar, el("p", { class: "limit" }, "Of the compliance at rated torque: ", ...names));
+  return el("div", { class: "budget" }, stack(parts, 1, `Compliance: ${words}`), el("p", { class: "limit" }, "Of the compliance at rated torque: ", ...names));
 }
 
 // θ(T) from 0 to rated torque; the other way round it is the same.
-function curve({ line, marks }, pinned) {
-  const { torque_Nm: torque, angle_arcsec: angle } = line;
-  const reach = Math.max(torque.at(-1), pinned ? pinned.torque_Nm.at(-1) : 0);
-  const top = Math.max(angle.at(-1), pinned ? pinned.angle_arcsec.at(-1) : 0) * 1.06;
-  const x = (t) => EDGE.left + (t / reach) * (W - EDGE.left - EDGE.right);
-  const y = (a) => EDGE.top + (1 - a / top) * (H - EDGE.top - EDGE.bottom);
-  const points = (ts, as) => ts.map((t, i) => `${x(t).toFixed(1)},${y(as[i]).toFixed(1)}`).join(" ");
-  const chart = svg("svg", { viewBox: `0 0 ${W} ${H}`, class: "line gearline", role: "img", "aria-label": "Angle of the whole gear over torque" });
-  for (const a of ticks(top)) {
-    chart.append(svg("path", { d: `M${EDGE.left} ${y(a)}H${W - EDGE.right}`, class: a ? "grid" : "axis" }),
-      svg("text", { x: EDGE.left - 5, y: y(a) + 3.5, "text-anchor": "end" }, grouped(a, 0)));
-  }
-  chart.append(svg("path", { d: `M${EDGE.left} ${EDGE.top}V${H - EDGE.bottom}`, class: "axis" }),
-    svg("text", { x: EDGE.left + 5, y: EDGE.top + 8 }, "arcsec"));
+function whole({ line, marks }, pinned) {
+  const lines = pinned ? [line, pinned] : [line];
+  const { chart, x, mark, curve } = frame({
+    reach: Math.max(...lines.map((one) => one.torque_Nm.at(-1))),
+    top: 1.06 * Math.max(...lines.map((one) => one.angle_arcsec.at(-1))),
+    label: "Angle of the whole gear over torque",
+    kind: "line gearline",
+  });
+  mark(0);
+  chart.append(svg("text", { x: x(0) + 5, y: 16 }, "arcsec"));
   for (const [name, t] of marks) {
-    const words = `${name.replace("_", "")} ${t.toPrecision(3)}${name === "T_N" ? " N·m" : ""}`;
-    chart.append(svg("path", { d: `M${x(t)} ${EDGE.top}V${H - EDGE.bottom}`, class: "load" }),
-      svg("text", { x: Math.min(x(t), W - EDGE.right), y: H - 7, "text-anchor": name === "T_N" ? "end" : "middle" }, words));
+    mark(t, `${name.replace("_", "")} ${t.toPrecision(3)}${name === "T_N" ? " N·m" : ""}`, name === "T_N" ? "end" : "middle");
   }
-  if (pinned) chart.append(svg("polyline", { points: points(pinned.torque_Nm, pinned.angle_arcsec), class: "curve pinned" }));
-  chart.append(svg("polyline", { points: points(torque, angle), class: "curve" }));
+  if (pinned) curve(pinned, 1, "curve pinned");
+  curve(line);
   return chart;
 }

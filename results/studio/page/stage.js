@@ -6,7 +6,6 @@ import { el, grouped } from "./dom.js";
 import { state } from "./state.js";
 import { View } from "./view.js";
 
-const TICKS = 4;
 const PATIENCE_MS = 400; // so long may colours of the design before stay: no flicker while a slider moves
 
 // The part in 3-D; where the browser cannot draw it, one line instead.
@@ -107,13 +106,10 @@ export class Stage {
     const shape = this.shown;
     this.scale.hidden = shape.is !== "field";
     if (this.scale.hidden) return;
-    const peak = shape.peak_MPa;
-    const places = Math.max(0, 2 - Math.floor(Math.log10(peak)));
-    const marks = Array.from({ length: TICKS + 1 }, (_, i) => grouped((peak * i) / TICKS, places)).reverse();
     const bar = colourBar(this.style.scale);
     bar.className = "bar";
     this.scale.replaceChildren(el("p", { class: "unit" }, "von Mises, MPa"),
-      el("div", { class: "bars" }, bar, el("ol", {}, ...marks.map((mark) => el("li", {}, mark)))),
+      el("div", { class: "bars" }, bar, el("ol", {}, ...shape.ticks_MPa.map((tick) => el("li", {}, tick)))),
       el("p", { class: "peak", title: shape.excluded }, "● peak"));
     this.magnified = shape.view === "wave_generator"
       ? `Displacements drawn ${grouped(shape.magnification, 0)} times as large. ` : "";
@@ -162,7 +158,8 @@ export class Stage {
     if (bar && !this.scale.hidden) {
       const [x, y, h] = [sheet.width - 92 * k, 70 * k, Math.min(220 * k, sheet.height - 110 * k)];
       pen.drawImage(bar, x, y, 14 * k, h);
-      this.scale.querySelectorAll("li").forEach((mark, i) => pen.fillText(mark.textContent, x + 20 * k, y + 4 * k + (h * i) / TICKS));
+      const ticks = this.shown.ticks_MPa;
+      ticks.forEach((tick, i) => pen.fillText(tick, x + 20 * k, y + 4 * k + (h * i) / (ticks.length - 1)));
     }
     return new Promise((done) => sheet.toBlob(done, "image/png"));
   }

@@ -3,14 +3,14 @@
 import { PartScene } from "./part_scene.js";
 import { creases, mover, revolved } from "./shape.js";
 
-const INK = "#1f2429";
 const EYE = [0.45, -1.1, 0.85];
 
 export class View extends PartScene {
   constructor(root, style) {
     super(root, style.scale);
     this.options = { open: false, deformed: true };
-    this.edge = this.lineOf(INK, 0.55);
+    this.edge = this.lineOf(style.ink, 0.55);
+    this.plain = this.matt({ color: style.steel });
     this.mark = this.addDot(style.accent);
     this.mark.visible = false;
   }

@@ -14,7 +14,7 @@ from opengl import machine_without
 
 from flexspline.results.renders.mesh_picture import write_mesh_picture
 from flexspline.results.renders.opengl import ADVICE
-from flexspline.results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.results.renders.process import STOPPED, DrawingProcess, NotDrawnError
 
 
 @pytest.fixture(autouse=True)
@@ -81,7 +81,10 @@ def test_a_full_disk_is_a_line(monkeypatch) -> None:
 def test_a_file_that_comes_while_the_folder_goes_is_no_error(monkeypatch) -> None:
     """A thread that was about to draw when a command failed: the command's own reason is told, not this."""
 
+    removed = []
+
     def filled(path: object, **_: object) -> None:
+        removed.append(path)
         raise OSError(39, "Directory not empty", str(path))
 
     process = DrawingProcess()
@@ -89,6 +92,9 @@ def test_a_file_that_comes_while_the_folder_goes_is_no_error(monkeypatch) -> Non
     with monkeypatch.context() as late:
         late.setattr(os, "rmdir", filled)
         process.__exit__()
+    assert removed  # it came to that
+    with pytest.raises(NotDrawnError, match=STOPPED):
+        process.draw(failing_drawings.good, "a hat")
 
 
 def test_a_picture_that_takes_too_long_is_given_up() -> None:

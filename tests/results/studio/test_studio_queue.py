@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from socket import SHUT_RDWR
 from typing import Any
 
 import aiohttp.test_utils
@@ -48,7 +49,7 @@ def test_closed_tabs_take_no_turn() -> None:
             if i % 2:
                 await socket.close()
             else:
-                socket._response.connection.transport.abort()
+                socket.get_extra_info("socket").shutdown(SHUT_RDWR)
         begun = len(worker.evaluated)
         assert begun == 1  # the process answers one question at a time; it waits to be let go on
         async with client.ws_connect("/live") as socket:

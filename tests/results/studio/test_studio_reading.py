@@ -197,6 +197,7 @@ def test_a_link_on_another_page_opens_it(studio_browser: Browser, held: HeldStud
     page.goto(f"data:text/html,<a href='{held.url}'>open</a>")
     page.click("a")
     page.locator("#name:enabled").wait_for()
+    assert page.locator("#name").input_value() == "my cup"
     context.close()
 
 

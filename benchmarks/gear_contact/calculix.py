@@ -1,7 +1,7 @@
-"""Surface contact by CalculiX itself: the rim on the rigid plug under the tooth forces of gear_contact_3d.py.
+"""Surface contact by CalculiX itself: the rim on the rigid plug under the tooth forces of solve.py.
 
-    python3 benchmarks/gear_contact_calculix.py              small displacements, about ten minutes
-    python3 benchmarks/gear_contact_calculix.py NLGEOM       large ones
+    python3 -m benchmarks.gear_contact.calculix              small displacements, about ten minutes
+    python3 -m benchmarks.gear_contact.calculix NLGEOM       large ones
 
 Rim and plug are two meshes with *CONTACT PAIR, TYPE=SURFACE TO SURFACE between them. The plug takes its
 ellipse, then teeth push with the forces that the least squares found at each turn, while the mount stands
@@ -20,14 +20,15 @@ import tempfile
 from math import cos, sin
 from pathlib import Path
 
-import gear_contact_3d as gear
-import gear_contact_stiffness as stiff
 import numpy as np
-from gear_contact_mesh import INSIDE, OUTSIDE, Part, cup, hoop
 
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import Elastic
 from flexspline.pipeline.gear_model import gear_model
+
+from . import solve as gear
+from . import stiffness as stiff
+from .mesh import INSIDE, OUTSIDE, Part, cup, hoop
 
 PRESSURE = 1e5
 """Per penetration [MPa/mm]: 1 µm at the seat's inner edge, by which every turn is some 0.02 mrad larger."""

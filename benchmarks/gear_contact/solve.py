@@ -1,8 +1,8 @@
 """A whole gear with its wave generator locked, in three dimensions, beside `flexspline gear`.
 
     apt-get install calculix-ccx
-    python3 benchmarks/gear_contact_3d.py            all meshes, some 20 minutes of one core
-    python3 benchmarks/gear_contact_3d.py coarse     one mesh, 3 minutes
+    python3 -m benchmarks.gear_contact.solve            all meshes, some 20 minutes of one core
+    python3 -m benchmarks.gear_contact.solve coarse     one mesh, 3 minutes
 
 CalculiX assembles the stiffness of the flexspline and of the outer race from bricks with 20 nodes, half of
 each: what stands half a turn away moves alike. It is condensed to the pitch points of the teeth, to Gauss
@@ -11,7 +11,7 @@ Hanson's nonnegative least squares (scipy.optimize.nnls), Hertz's law of the bal
 again. No harmonics, no places along the seat, no interior point method.
 
 From flexspline come the laws that both models assume: gaps of the unloaded flanks, compliance of one pair of
-teeth and of one ball. Written to gear_contact_3d.json; docs/whole-gear.md shows it.
+teeth and of one ball. Written to record.json; docs/whole-gear.md shows it.
 """
 
 from __future__ import annotations
@@ -27,11 +27,8 @@ from itertools import pairwise
 from math import cos, pi, sin, tan
 from pathlib import Path
 
-import gear_contact_stiffness as stiff
 import numpy as np
 import scipy
-from gear_contact_forces import Problem
-from gear_contact_mesh import INSIDE, OUTSIDE, Part, cup, hoop
 from scipy.sparse import csc_matrix
 
 from flexspline.fea.gear.model import GearModel
@@ -43,7 +40,11 @@ from flexspline.geometry.sized import sized_template
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import GROOVE_SHARE, gear_model
 
-RESULTS = Path(__file__).with_name("gear_contact_3d.json")
+from . import stiffness as stiff
+from .forces import Problem
+from .mesh import INSIDE, OUTSIDE, Part, cup, hoop
+
+RESULTS = Path(__file__).with_name("record.json")
 SIZE, RATIO = 14, 50
 CHANGED = {"flexspline.bolt_count": 0, "flexspline.inner_fillet_mm": 0.0, "flexspline.outer_fillet_mm": 0.0,
            "flexspline.wall_thickness_mm": 0.3556, "flexspline.diaphragm_thickness_mm": 0.5334,

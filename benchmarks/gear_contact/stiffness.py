@@ -12,11 +12,12 @@ from math import cos, sin
 from pathlib import Path
 
 import numpy as np
-from gear_contact_mesh import Part, serendipity
 from scipy.sparse import coo_matrix, csc_matrix
 
 from flexspline.fea.solid.direct import factorised
 from flexspline.fea.types import Elastic
+
+from .mesh import Part, serendipity
 
 Functional = dict[int, tuple[float, float]]
 BLOCK = 100

@@ -1,4 +1,4 @@
-"""Contact of a gear's flanks, seat and balls at a given turn of the output, for gear_contact_3d.py."""
+"""Contact of a gear's flanks, seat and balls at a given turn of the output, for solve.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Quadratic bricks (C3D20) of bodies of revolution over half a turn, for gear_contact_3d.py.
+"""Quadratic bricks (C3D20) of bodies of revolution over half a turn, for solve.py.
 
 A part is made of blocks of its meridian, each with so many bricks along r and z; angles in rad from the wave
 generator's major axis, from −π/2 to π/2. Node numbers begin at 0 here and at 1 in the deck.
