@@ -9,11 +9,10 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from queue import SimpleQueue
 from threading import Thread
 from typing import Any, Self, TypeVar
 
@@ -59,8 +58,8 @@ def results_of(
 
     A second process takes those not yet begun, if there may be one. Where it fails, whatever the reason, its
     tasks are done here once more, and what they raise then is raised. `begun` is called here after it began,
-    and may start threads: the copy is made. `told` is given each task's number and result, between the tasks
-    of this process.
+    and may start threads: the copy is made. `told` is given each task's number and result as it is there, by
+    one of two threads.
     """
     if len(tasks) < 2 or not may_copy():
         begun()
@@ -81,10 +80,9 @@ def results_of(
         there.close()
         try:
             begun()
-            received = _Received(here)
-            done = _done_here(tasks, numbers, told, received.new)
-            received.join()
-            done |= received.new(told)
+            received = _Received(here, told)
+            done = _done_here(tasks, numbers, told)
+            done |= received.all()
         finally:
             second.kill()
             second.join()
@@ -125,17 +123,13 @@ def _can_copy() -> bool:
 
 
 def _done_here(
-    tasks: Sequence[Callable[[], T]],
-    numbers: Iterable[int],
-    told: Callable[[int, T], None],
-    arrived: Callable[[Callable[[int, T], None]], dict[int, T]] = lambda told: {},
+    tasks: Sequence[Callable[[], T]], numbers: Iterable[int], told: Callable[[int, T], None]
 ) -> dict[int, T]:
-    """What tasks return, by their number, and what `arrived` has after each of them."""
+    """What tasks return, by their number."""
     done: dict[int, T] = {}
     for number in numbers:
         done[number] = tasks[number]()
         told(number, done[number])
-        done |= arrived(told)
     return done
 
 
@@ -152,24 +146,32 @@ def _send_results(
         os._exit(1)  # the first process meets the fault itself
 
 
-class _Received(Thread):
-    """What the second process sends, taken from the pipe at once: it need not wait until somebody asks."""
+class _Received:
+    """What the second process sends, told as it comes by a thread of its own."""
 
-    def __init__(self, sent: Connection) -> None:
-        super().__init__(daemon=True)
-        self._sent, self._arrived = sent, SimpleQueue[tuple[int, Any]]()
-        self.start()
+    def __init__(self, sent: Connection, told: Callable[[int, Any], None]) -> None:
+        self._sent, self._told = sent, told
+        self._done: dict[int, Any] = {}
+        self._fault: BaseException | None = None
+        self._thread = Thread(target=self._receive, daemon=True)
+        self._thread.start()
 
-    def run(self) -> None:
-        # at the end, or in the middle of a result; and what it sent may fail in any way as it is made again
-        with suppress(Exception):
-            while True:
-                self._arrived.put(self._sent.recv())
+    def all(self) -> dict[int, Any]:
+        """Waits for the second process's end; raises what `told` raised."""
+        self._thread.join()
+        if self._fault is not None:
+            raise self._fault
+        return self._done
 
-    def new(self, told: Callable[[int, Any], None]) -> dict[int, Any]:
-        """What came since the last call, by the numbers of the tasks."""
-        found = {}
-        while not self._arrived.empty():
-            number, found[number] = self._arrived.get()
-            told(number, found[number])
-        return found
+    def _receive(self) -> None:
+        while True:
+            try:
+                number, result = self._sent.recv()
+            except Exception:  # its end; or what it sent, whole or not, fails as it is made again
+                return
+            self._done[number] = result
+            try:
+                self._told(number, result)
+            except BaseException as fault:
+                self._fault = fault
+                return

@@ -64,7 +64,7 @@ def test_words_kept_in_memory_have_one_process(monkeypatch: pytest.MonkeyPatch) 
 
 
 @linux_with_two_processors
-def test_what_the_other_process_found_is_told_between_the_tasks_of_this_one() -> None:
+def test_what_the_other_process_found_is_told_as_it_comes() -> None:
     told: list[tuple[int, int]] = []
     with second_process():
         pids = results_of(
@@ -74,6 +74,16 @@ def test_what_the_other_process_found_is_told_between_the_tasks_of_this_one() ->
     assert sorted(told) == [*enumerate(pids)]  # each once, with its own result
     ours = [pid == os.getpid() for _, pid in told]
     assert ours.index(False) < len(ours) - 1 - ours[::-1].index(True)
+
+
+@linux_with_two_processors
+def test_a_fault_of_the_listener_is_raised() -> None:
+    def listener(number: int, pid: int) -> None:
+        if pid != os.getpid():
+            raise ValueError("not wanted")
+
+    with second_process(), pytest.raises(ValueError, match="not wanted"):
+        results_of([partial(wait_and_say, k) for k in range(4)], told=listener)
 
 
 def test_all_is_told_where_there_is_one_process_and_where_the_other_fails() -> None:
