@@ -17,7 +17,13 @@ from flexspline.results.study.best_design import write_best_design
 from flexspline.results.study.best_stress import BestStress, draw_best_stress
 from flexspline.results.study.design_warnings import design_warnings
 from flexspline.results.study.figures import write_figures
-from flexspline.results.study.notes import border_warnings, preloaded, unsettled, wide_bounds
+from flexspline.results.study.notes import (
+    border_warnings,
+    preloaded,
+    unmoved,
+    unsettled,
+    wide_bounds,
+)
 from flexspline.results.study.progress import Watch
 from flexspline.results.study.record import summary
 from flexspline.results.study.report import write_study_reports
@@ -48,8 +54,8 @@ def study_answer(
     """The keys of docs/contract.md; warnings are told, and all files of `folder` are written."""
     of_designs = tuple(design_warnings(result))
     tell_all(
-        (*unsettled(result), *wide_bounds(result), *border_warnings(result), *preloaded(result),
-         *of_designs)
+        (*unsettled(result), *unmoved(result), *wide_bounds(result), *border_warnings(result),
+         *preloaded(result), *of_designs)
     )  # fmt: skip
     tables = _write_tables(folder, result)
     record: dict[str, Any] = summary(result)

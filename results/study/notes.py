@@ -41,6 +41,7 @@ def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
         _mass(result.study.design),
     ]
     said += map(sentence, unsettled(result))
+    said += map(sentence, unmoved(result))
     said += _borders(result)
     said += _whole_gear(result)
     said += map(sentence, of_designs)
@@ -119,6 +120,17 @@ def unsettled(result: StudyResult) -> Iterable[str]:
             yield (
                 f"the search has not settled: the best “{entry(key).name}” {moved} in the last quarter of "
                 f"the {len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
+            )
+
+
+def unmoved(result: StudyResult) -> Iterable[str]:
+    """A line for each objective that is the same in all designs: there is no best one."""
+    for key in result.study.file.objective:
+        values = {r.outcome.figures[key] for r in result.built if key in r.outcome.figures}
+        if len(values) == 1 and len(result.built) > 1:
+            yield (
+                f"“{entry(key).name}” is the same in all {len(result.built)} designs: the model does not "
+                "depend on what is varied, so no design is the best"
             )
 
 

@@ -22,7 +22,7 @@ from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.gains import gains_drawn, gains_shown
 from flexspline.results.study.labels import entry, valued
-from flexspline.results.study.notes import border_warnings, notes, unsettled, wide_bounds
+from flexspline.results.study.notes import border_warnings, notes, unmoved, unsettled, wide_bounds
 from flexspline.results.study.question import question
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
@@ -476,3 +476,19 @@ def test_a_search_that_has_not_settled_says_so(values: list[float], said: str | 
         assert K not in line
     sampled = study_from(tomllib.loads(text.replace('"optimize"', '"sobol"')), EXAMPLES, "test")
     assert not list(unsettled(StudyResult(sampled, rows)))
+
+
+@pytest.mark.parametrize(
+    ("values", "said"), [((100.0, 100.0, 100.0), 1), ((100.0, 100.0, 100.1), 0)]
+)
+def test_an_objective_that_nothing_varied_moves_is_said(
+    values: tuple[float, ...], said: int
+) -> None:
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.01 * i}, Outcome({K: 1e3 * v, STRESS: 310.0 + i, TOTAL: 85.0}))
+        for i, v in enumerate(values)
+    )
+    lines = list(unmoved(StudyResult(study, rows)))
+    assert len(lines) == said
+    assert all("is the same in all 3 designs" in line for line in lines)
