@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.stress_limits import PassedLimit
 
 NOT_SOLVED = (
-    "without the peak stress of notches, which `flexspline run` solves and which may end it earlier"
+    "without the peak stress of notches, which `flexspline run` computes and which may lower it"
 )
 
 
