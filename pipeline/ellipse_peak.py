@@ -1,4 +1,4 @@
-"""The peak stress on the wave generator's ellipse, by the meridian or by the solid model.
+"""The peak stress on the wave generator's ellipse, from the meridian or from the solid model.
 
 A flexspline with bolt holes lies between two bodies of revolution (`geometry.nested`). No theorem orders
 their stresses, but what the ellipse does to the rim dies out towards the holes: where both bodies have the

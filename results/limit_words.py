@@ -1,4 +1,4 @@
-"""Limits in words: what a peak stress passes, and up to which torque the linear model is valid."""
+"""Limits in words: limits that a peak stress exceeds, and the torque limit of the linear model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A peak stress in words: whether it is the part's, and beside which limit it may stand."""
+"""A peak stress in words: whether it is valid for the part, and its comparison with a limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The next measurement in words: what to do, and what it would settle."""
+"""The next measurement in words: what to do, and what it distinguishes or confirms."""
 
 from __future__ import annotations
 

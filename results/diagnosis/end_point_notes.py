@@ -1,4 +1,4 @@
-"""End points: what else can and cannot be concluded, with the numbers."""
+"""Notes on end points: limits of the conclusions, with the numbers."""
 
 from __future__ import annotations
 

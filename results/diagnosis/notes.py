@@ -1,4 +1,4 @@
-"""What a reader should know of how a record was used, one line each."""
+"""Notes on the use of a record, one line each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a reader of a prediction should know: units and rows that the model's record does not have."""
+"""Warnings of a prediction: units and rows that the model's record does not have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Structure without a name in words: what it is like, and which limit it breaks."""
+"""Unexplained structure in words: its form, and the limit that it exceeds."""
 
 from __future__ import annotations
 

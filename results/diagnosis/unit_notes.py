@@ -1,4 +1,4 @@
-"""What a reader should know of a sweep of several units: what they share, and how they differ."""
+"""Notes on a sweep of several units: common effects and differences."""
 
 from __future__ import annotations
 

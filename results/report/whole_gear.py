@@ -1,4 +1,4 @@
-"""The report's section on the whole gear: its curve, its shares, and the backlash sum beside it."""
+"""The report's section on the whole gear: its curve, its shares, and a comparison with the sum."""
 
 from __future__ import annotations
 

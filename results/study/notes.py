@@ -1,4 +1,4 @@
-"""What a study's report says about its own limits."""
+"""Notes in a study's report on its limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study's result for machines and in a few lines for people."""
+"""A study's result as JSON, and in a few lines for the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The report's section on what scatters."""
+"""The report's section on the scatter of a tolerance study."""
 
 from __future__ import annotations
 

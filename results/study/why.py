@@ -1,4 +1,4 @@
-"""Why the best designs win, in sentences with numbers."""
+"""Reasons why the best designs are best, in sentences with numbers."""
 
 from __future__ import annotations
 

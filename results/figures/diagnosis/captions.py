@@ -1,4 +1,4 @@
-"""What each figure shows, and what to see in it."""
+"""Captions of the diagnosis figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each cause adds to the angle, against the channel in which it shows best."""
+"""Contribution of each cause to the angle, over the channel in which it is clearest."""
 
 from __future__ import annotations
 

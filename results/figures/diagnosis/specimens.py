@@ -1,4 +1,4 @@
-"""Specimens: measured stiffness against FE, by specimen and by every dimension that varies."""
+"""Specimens: measured stiffness compared with FE, by specimen and by every dimension that varies."""
 
 from __future__ import annotations
 
