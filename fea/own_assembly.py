@@ -1,7 +1,7 @@
 """Faster replacements for some scikit-fem functions, with the same results.
 
-Tests compare each function with scikit-fem. The time that each one saves is in docs/decisions.md ("What is the
-program's own").
+Tests compare each function with scikit-fem. The time that each one saves is in docs/decisions.md ("What is
+the program's own").
 """
 
 from __future__ import annotations
