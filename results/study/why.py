@@ -38,7 +38,7 @@ def influences(result: StudyResult) -> list[str]:
 
 
 def misses(result: StudyResult) -> list[str]:
-    """Where no design keeps to every constraint: how many keep to each, and the nearest one."""
+    """If no design meets every constraint: how many meet each, and the nearest one."""
     row = result.nearest
     if row is None or result.feasible:
         return []

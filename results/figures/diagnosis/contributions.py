@@ -65,7 +65,7 @@ def write_contributions(path: Path, shown: SweepPictureData) -> None:
                 marker="o",
                 lw=0,
                 ms=4,
-                label="measured less all other parts, torque rising",
+                label="measured minus all other parts, torque rising",
             ),
             Line2D([], [], color=FALLING, marker="o", lw=0, ms=4, label="the same, torque falling"),
             Line2D([], [], color=INK, marker="o", lw=0, ms=3, label="model"),

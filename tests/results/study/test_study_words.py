@@ -83,7 +83,7 @@ def test_gains_of_tighter_tolerances_do_not_fall_in_print() -> None:
         ["10.3", "19.6", "19.6", "28.0"],  # 19.55 twice
     ]
     (said,) = [str(b) for b in scatter_section(scatter) if "last four columns" in str(b)]
-    assert "Sampling hides gains of less than 0.3 arcsec." in said
+    assert "Gains below 0.3 arcsec are sampling error." in said
     assert set(gains_drawn(scatter)) == set(gains_shown(scatter))
     assert [gains_drawn(scatter)[k] for k in gains_drawn(scatter)][:4] == [0.0] * 4
 
