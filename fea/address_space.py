@@ -1,4 +1,4 @@
-"""The address space of this process, where somebody limits it (`ulimit -v`, a job scheduler)."""
+"""The free address space of this process, if it is limited (`ulimit -v`, a job scheduler)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Children of this process: the command that starts one with the same modules, and their end."""
+"""Child processes: the command that starts one with the same modules, and its termination."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cylindrical coordinates: where the components of a displacement stand."""
+"""Cylindrical coordinates: the order of displacement components."""
 
 from __future__ import annotations
 

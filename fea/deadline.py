@@ -1,4 +1,4 @@
-"""Time that a refinement may take: a mesh whose solve would end too late is not begun."""
+"""Time limit of a refinement: a mesh is not started if its solve would end too late."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can go wrong in a model and its solve; each error carries its numbers."""
+"""Errors of models and solves; each error contains its numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What both contact solvers take from Mehrotra's method (SIAM J. Optim. 2 (1992) 575-601)."""
+"""Parts of Mehrotra's method that both contact solvers use (SIAM J. Optim. 2 (1992) 575-601)."""
 
 from __future__ import annotations
 

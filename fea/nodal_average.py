@@ -1,4 +1,4 @@
-"""Averages at the nodes of what elements have there: stresses jump from one to the next."""
+"""Nodal averages of element values."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What is the program's own of what scikit-fem does between meshes, fields and the matrix, for time alone.
+"""Faster replacements for some scikit-fem functions, with the same results.
 
-Nothing here says anything that scikit-fem does not; tests hold each part to its answers. What each part saves
-stands in docs/decisions.md ("What is the program's own").
+Tests compare each function with scikit-fem. The time that each one saves is in docs/decisions.md ("What is
+the program's own").
 """
 
 from __future__ import annotations

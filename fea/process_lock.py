@@ -1,4 +1,4 @@
-"""Locks that threads, and the copies that a process makes of itself, hold one after the other."""
+"""Locks between threads and forked processes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Solve on finer and finer meshes until the tolerance is met: the one loop of all models.
+"""Solves on finer and finer meshes until the tolerance is met: the common loop of all models.
 
 A mesh after the first that cannot be made or solved, or not in time, costs itself only: the answer is that
 of the meshes before it, and the shortfall says why there is no better one.

@@ -1,4 +1,4 @@
-"""The estimated error of an upper bound of K, scaled by what the last two meshes say of it.
+"""The estimated error of an upper bound of K, scaled by the change between the last two meshes.
 
 The recovery estimate e of K's error is off by a factor c that the meshes' K tell: K_1 − c·e_1 = K_2 − c·e_2.
 On meshes that follow e, what e does not see stays: there K's own falls are asked, too. If each is q times the

@@ -1,4 +1,4 @@
-"""Why a refinement ended before its tolerance was met: clauses that stand after a figure's bounds.
+"""Reasons why a refinement ended before its tolerance was met, printed after a figure's bounds.
 
 What was computed until then is given all the same; the clause travels with it (`Stiffness.shortfall`,
 `StressPeak.shortfall`).

@@ -1,4 +1,4 @@
-"""Whether a peak stress belongs to the part or to the rule that leaves sharp edges out.
+"""Decides whether a peak stress belongs to the part or depends on the excluded zone at sharp edges.
 
 A peak right where the excluded zone ends is no maximum of the part: the stress goes on rising towards
 the edge, and another distance would give another figure. What is tested is just that: whether the figure

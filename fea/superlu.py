@@ -1,4 +1,4 @@
-"""SuperLU's factors of a sparse symmetric positive definite matrix: of small ones, and where MKL is not."""
+"""SuperLU's factors of a sparse symmetric positive definite matrix: for small ones, and without MKL."""
 
 from __future__ import annotations
 

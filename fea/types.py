@@ -1,4 +1,4 @@
-"""What the fea room hands on: meshes, stiffnesses and solved fields, all frozen."""
+"""Results of the fea package: meshes, stiffnesses and solved fields, all immutable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a design file does not state, and where its value comes from."""
+"""An assumed value: a key that the design file does not state, its value and the reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ranges as refusals print them: rounded inwards, so that each end, typed in as it stands, is accepted."""
+"""Ranges as error messages print them: rounded inwards, so that each printed end is accepted as input."""
 
 from __future__ import annotations
 

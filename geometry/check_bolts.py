@@ -1,4 +1,4 @@
-"""Which bolt holes fit: inside their land, apart from each other."""
+"""Checks of bolt holes: inside their land, apart from each other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which fillets fit a flexspline: beside the boss or flange, below the ring, apart from each other."""
+"""Checks of a flexspline's fillets: beside the boss or flange, below the ring, apart from each other."""
 
 from __future__ import annotations
 

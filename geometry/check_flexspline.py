@@ -1,4 +1,4 @@
-"""Which flexsplines can be built: fillets that fit, a ring on the tube, holes inside their land."""
+"""Checks of a flexspline: fillets that fit, a ring on the tube, holes inside their land."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which keyways can be cut: within the shaft, above its bore, narrower than the chord at their floor."""
+"""Checks of a keyway: within the shaft, above its bore, narrower than the chord at its floor."""
 
 from __future__ import annotations
 

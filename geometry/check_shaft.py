@@ -1,4 +1,4 @@
-"""Which shafts can be built: segments that meet, fillets and grip with room."""
+"""Checks of a shaft: segments that meet, room for fillets and grip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which teeth can be drawn: the root within the pitch circle, a gap there, and a tip that is not pointed."""
+"""Checks of drawn teeth: root within the pitch circle, a gap there, and a tip that is not pointed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rules that tie several keys of a design together: what cannot be built is refused, with numbers.
+"""Checks that use several keys of a design: impossible geometry is refused, with numbers.
 
 What one key may hold by itself stands in `geometry.design`. What can be built but looks wrong is a
 warning of `geometry.sanity`, never a refusal.

@@ -1,4 +1,4 @@
-"""One figure that nothing fits: where several others contradict it, it is refused itself.
+"""Finds the one wrong value if it contradicts several others; the error message then names this value.
 
 Of a tube 0.03 mm long with a ring of 8 mm and a boss of 3 mm, the length is wrong, and not the other two.
 """

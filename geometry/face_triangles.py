@@ -1,4 +1,4 @@
-"""Triangles of CAD faces, by the kernel."""
+"""Triangulation of CAD faces by the CAD kernel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signs of a Chinese or Japanese keyboard, as wide as a Chinese letter, and ASCII's."""
+"""Full-width characters of Chinese and Japanese keyboards, and their ASCII equivalents."""
 
 from __future__ import annotations
 

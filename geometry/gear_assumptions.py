@@ -1,4 +1,4 @@
-"""All that the whole gear takes where a design file is silent."""
+"""Assumed values of the whole gear for optional keys that the design file leaves out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bytes of a file that a user names: regular files within a size limit, nothing that waits or never ends."""
+"""Reads input files safely: only regular files within a size limit, no pipes or devices."""
 
 from __future__ import annotations
 

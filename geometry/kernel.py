@@ -1,4 +1,4 @@
-"""Whether the CAD kernel can be loaded: it is linked with OpenGL, which a bare Linux does not have."""
+"""Tests whether the CAD kernel can be loaded: it needs OpenGL, which a bare Linux does not have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lists in a sentence, short enough to be read."""
+"""Short lists for sentences."""
 
 from __future__ import annotations
 

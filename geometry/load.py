@@ -1,4 +1,4 @@
-"""From a design file to a checked Design; every fault is one line."""
+"""Reads a design file and returns a checked Design; every fault is one line."""
 
 from __future__ import annotations
 

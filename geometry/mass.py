@@ -1,4 +1,4 @@
-"""What a part weighs: its meridian revolved (Pappus), less holes and keyway, times the density."""
+"""Mass of a part: its revolved meridian (Pappus), minus holes and keyway, times the density."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a part is made of."""
+"""Materials of the parts."""
 
 from __future__ import annotations
 

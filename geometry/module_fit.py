@@ -1,4 +1,4 @@
-"""Whether module and teeth belong to the ring: a slipped decimal point is told from a ring that is off."""
+"""Checks that module and teeth fit the ring; distinguishes a slipped decimal point from a wrong ring."""
 
 from __future__ import annotations
 

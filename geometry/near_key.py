@@ -1,4 +1,4 @@
-"""The known key that a misspelt one is most like."""
+"""The known key that is most similar to a misspelt key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which CAD surface a mesh facet lies on: the nearest tagged triangle whose normal agrees."""
+"""The CAD surface of a mesh facet: the nearest tagged triangle with a matching normal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two simpler bodies around a part: one lies inside it, it lies inside the other.
+"""Two simpler bodies that enclose a part: one lies inside it, the other around it.
 
 Around a flexspline with bolt holes, bodies of revolution. The whole body has no holes. The cut body has
 lost the annulus that the holes lie in, from bolt_circle/2 − hole/2 to bolt_circle/2 + hole/2, right

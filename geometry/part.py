@@ -1,4 +1,4 @@
-"""One part of a gear, the flexspline or the shaft: its shape, its material, and what follows from them."""
+"""One part of a gear, the flexspline or the shaft: its shape, its material, and derived values."""
 
 from __future__ import annotations
 

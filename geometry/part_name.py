@@ -1,4 +1,4 @@
-"""The parts of a gear by name."""
+"""Names of the parts of a gear."""
 
 from __future__ import annotations
 

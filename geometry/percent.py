@@ -1,4 +1,4 @@
-"""A share as words: a number, a space, the sign."""
+"""A ratio printed as percent: a number, a space, the sign."""
 
 from __future__ import annotations
 

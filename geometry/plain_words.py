@@ -1,4 +1,4 @@
-"""What pydantic found wrong with a file, said in plain words on one line."""
+"""Pydantic's errors for a file in plain words, on one line."""
 
 from __future__ import annotations
 

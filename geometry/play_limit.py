@@ -1,4 +1,4 @@
-"""How much play of the wave generator's bearing the involute model answers."""
+"""The largest play of the wave generator's bearing for which the involute model is valid."""
 
 from __future__ import annotations
 

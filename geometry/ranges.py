@@ -1,4 +1,4 @@
-"""What physics and metrology know of the numbers that a user gives, wide enough for any real gear.
+"""Plausible ranges of input values from physics and metrology, wide enough for any real gear.
 
 Wave gears reach from 1 mm, of plastic or nickel, to telescope drives of metres. What lies outside is a slip
 of the unit or of the exponent, and numbers such as 1e-310 would divide by zero further on.

@@ -1,4 +1,4 @@
-"""Rated torque where a design states none: in proportion to the pitch radius cubed."""
+"""Rated torque if a design states none: in proportion to the pitch radius cubed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Physical sanity of a design: what can be built but is unusual is said with its numbers.
+"""Warnings for a design that can be built but has unusual values.
 
 Nothing here refuses a design. The ranges are rules of thumb, wide enough for long cups and flat
 hats.

@@ -1,4 +1,4 @@
-"""The schema as plain data: what stands at a dotted key, which range it allows, in words."""
+"""The schema as plain data: description and valid range of each dotted key, in words."""
 
 from __future__ import annotations
 

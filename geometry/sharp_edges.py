@@ -1,4 +1,4 @@
-"""Points along a solid's sharp edges and patch edges, which the rule of excluded stress is about."""
+"""Points along a solid's sharp edges and patch edges, near which stress is excluded."""
 
 from __future__ import annotations
 

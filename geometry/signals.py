@@ -1,4 +1,4 @@
-"""Requests to end that wait for what must not be broken off: a file's last step, the loading of a library."""
+"""Delays termination signals during steps that must not be interrupted, such as writing a file's end."""
 
 from __future__ import annotations
 

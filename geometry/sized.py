@@ -1,4 +1,4 @@
-"""A first design for a catalogue's size and ratio: the first design of its kind in proportion.
+"""A first design for a catalogue size and ratio: the default design of its kind, scaled.
 
 Makers keep inner dimensions to themselves. Sizes are the pitch diameter in tenths of an inch (size
 25 has a pitch radius of 31.75 mm at all ratios, size 14 17.78; as in Schaeffler's TPI 275), and the

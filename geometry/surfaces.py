@@ -1,4 +1,4 @@
-"""Analytic surfaces of a part: what a CAD face lies on, and how a nearby point is put back onto it."""
+"""Analytic surfaces of a part: the surface of each CAD face, and the projection of nearby points onto it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tagged surface: a part's CAD faces as triangles, each of which knows the surface it lies on.
+"""The tagged surface: a part's CAD faces as triangles; each triangle has a reference to its surface.
 
 Patches are named here, at the CAD face, and nowhere else.
 """

@@ -1,4 +1,4 @@
-"""Designs as TOML with comments, the schema's own descriptions: one to start from, or any other."""
+"""Designs as TOML with the schema's descriptions as comments: a first design, or any other."""
 
 from __future__ import annotations
 

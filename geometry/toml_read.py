@@ -1,4 +1,4 @@
-"""TOML from bytes that nothing is known of; every fault is one clause."""
+"""Reads TOML from arbitrary bytes; every fault is one clause."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text as TOML writes it."""
+"""Values and text in TOML syntax."""
 
 from __future__ import annotations
 

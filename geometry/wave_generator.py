@@ -1,4 +1,4 @@
-"""The wave generator's flexible bearing: what a design file may say of it, and proportions for the rest."""
+"""The wave generator's flexible bearing: values of the design file, and proportions for the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which designs have no whole gear, though their parts can be computed.
+"""Designs whose whole gear cannot be computed, although their parts can.
 
 Teeth that do not stand on the ring, a stroke beyond small displacements, a play that takes the stroke.
 """

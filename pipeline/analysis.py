@@ -1,4 +1,4 @@
-"""The whole way of a design: stiffnesses, stresses, backlash. Each command asks for a part of it."""
+"""The complete analysis of a design: stiffnesses, stresses, backlash. Each command uses a part of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `import flexspline` offers of a design: the commands as functions (of measured files: `measured.py`).
+"""The Python functions for designs: the commands as functions (for measured files: `measured.py`).
 
 Results are kept in the same cache as the commands'. Nothing is printed. What a function needs is imported
 in it: to name one loads nothing heavy, and a backlash of given stiffnesses loads no solver.

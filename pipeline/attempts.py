@@ -1,4 +1,4 @@
-"""Figures that are found one by one: what fails costs its own figure only, and is said."""
+"""Figures computed independently: a failed figure is reported, and the others are kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures that Fourier harmonics give on a flexspline's meridian: from the cache, or solved in their time."""
+"""Figures from Fourier harmonics on a flexspline's meridian: from the cache, or solved in a time limit."""
 
 from __future__ import annotations
 

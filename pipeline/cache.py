@@ -1,4 +1,4 @@
-"""Results kept by the content of what made them: the same question is answered once.
+"""Cache of results by the content of their inputs: the same input is computed once.
 
 fTetWild is not deterministic, so the cache is also what makes a part that it meshes give the same answer
 twice.

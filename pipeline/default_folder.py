@@ -1,4 +1,4 @@
-"""Where results go unless a user names a folder."""
+"""The default output folder."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Teeth that are drawn: the design whose plain ring is as stiff, which every model then uses."""
+"""Drawn teeth: the design with the equivalent plain ring, which every model then uses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The peak stress on the wave generator's ellipse, by the meridian or by the solid model."""
+"""The peak stress on the wave generator's ellipse, from the meridian or from the solid model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The enclosure of a design's flexspline with bolt holes: its two bodies solved, and where it may answer."""
+"""The two solved bodies that enclose a flexspline with bolt holes, and when they are accurate enough."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""K of a part between those of two simpler bodies: less material is never stiffer.
+"""K of a part lies between the K of two simpler bodies: removing material never makes a part stiffer.
 
 K of the cut body ≤ K of the part ≤ K of the whole body, in every load case (`geometry.nested` says which
 bodies; docs/theory.md proves it).

@@ -1,4 +1,4 @@
-"""The error that no figure can be left out for: it says that a model of the program is wrong."""
+"""Errors that stop the whole analysis, because a model of the program is wrong."""
 
 from __future__ import annotations
 

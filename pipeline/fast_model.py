@@ -1,4 +1,4 @@
-"""The fast model of a design: the command line's axisymmetric answers, piece by piece, for the live page.
+"""The fast model of a design for the live page: the command line's axisymmetric results, one by one.
 
 K_b of a flexspline with bolt holes is enclosed; everything else leaves holes and keyway out. Every body of
 revolution is solved exactly as `flexspline stiffness` does, to the design's own tolerance.

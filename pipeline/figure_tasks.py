@@ -1,4 +1,4 @@
-"""The figures of a design, two at a time: in two processes where that is allowed, else in two threads.
+"""Computes a design's figures two at a time: in two processes if possible, otherwise in two threads.
 
 Threads share Python's interpreter: on two cores two processes take three quarters of their time.
 """

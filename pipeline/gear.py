@@ -1,4 +1,4 @@
-"""The whole gear with its wave generator locked: θ(T), and what the makers' catalogues say of such a curve.
+"""The whole gear with its wave generator locked: θ(T), and the values that catalogues give for it.
 
 K1 is the chord from 0 to T1, K2 from T1 to T2, K3 from T2 to rated torque, as in the makers'
 catalogues; "0" is a thousandth of rated torque: a clearance that the teeth first cross is not

@@ -1,4 +1,4 @@
-"""The gear as a chain in series: teeth, rim and bearing in contact, then bolt holes and shaft."""
+"""The gear as a series chain: teeth, rim and bearing in contact, then bolt holes and shaft."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a design to the contact model of the whole gear: every law with its numbers."""
+"""Builds the contact model of the whole gear from a design."""
 
 from __future__ import annotations
 

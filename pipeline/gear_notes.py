@@ -1,4 +1,4 @@
-"""What a reader of the whole gear's figures must know: what was simplified, and what is no gear that runs."""
+"""Notes and warnings on the whole gear: simplifications, and gears that do not run."""
 
 from __future__ import annotations
 

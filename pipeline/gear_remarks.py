@@ -1,4 +1,4 @@
-"""What is said of the whole gear's figures, as facts; `results/gear_words.py` puts them into words."""
+"""Notes and warnings on the whole gear as facts; `results/gear_words.py` puts them into words."""
 
 from __future__ import annotations
 

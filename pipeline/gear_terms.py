@@ -1,4 +1,4 @@
-"""What the whole gear has in place of each term of the four-term backlash sum, between −T_L and +T_L."""
+"""The whole gear's equivalent of each term of the four-term backlash sum, between −T_L and +T_L."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `import flexspline` is given for a design: not a path, and checked."""
+"""Checks of the design that is passed to the Python functions: a design, not a path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much torque the whole gear takes: its flexspline's tube buckles, its teeth are pressed out."""
+"""Torque limits of the whole gear: buckling of the flexspline's tube, and ratcheting of the teeth."""
 
 from __future__ import annotations
 

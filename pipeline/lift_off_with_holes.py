@@ -1,4 +1,4 @@
-"""Lift-off of a part with bolt holes, where its two bodies of revolution lie far apart.
+"""Lift-off of a part with bolt holes whose two enclosing bodies differ too much.
 
 Lift-off has no solid model. But what it leaves of K, K resting over K held, is nearly the same of both bodies
 however far their K are apart, for it is a matter of the rim. The solid model knows K held of the part itself,

@@ -1,4 +1,4 @@
-"""Up to which torque the linear model is valid: closed forms, linear in the torque."""
+"""The torque limit of the linear model: closed forms, linear in the torque."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lobes and the wave generator do to the flexspline's rim: axisymmetric, solid, or the fast model.
+"""Load cases of lobes and wave generator on the flexspline's rim: axisymmetric, solid, or fast model.
 
 Commands, studies and the live page solve the load cases of `rim_case` by `CASES`.
 """

@@ -1,4 +1,4 @@
-"""K_b under the lobe load from K_b in torsion, of a part with bolt holes whose two bodies lie far apart.
+"""K_b under the lobe load from K_b in torsion, if a part's two enclosing bodies differ too much.
 
 The holes lie by the mount, where little arrives of a load on the rim but its torque. So what they add to 1/K
 under the lobes is what they add in torsion, which the solid model knows, and at most what the two bodies of

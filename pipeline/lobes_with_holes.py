@@ -1,4 +1,4 @@
-"""The lobe cases of a flexspline with bolt holes: what the holes change, by meshes as coarse as torsion's."""
+"""The lobe cases of a flexspline with bolt holes: the change caused by the holes, on coarse meshes."""
 
 from __future__ import annotations
 

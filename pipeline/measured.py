@@ -1,4 +1,4 @@
-"""What `import flexspline` offers of measured files: `diagnose`, as the command."""
+"""The Python function for measured files: `diagnose`, like the command."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One part of a gear as the stages see it: which model and mesher its settings mean, and its keys."""
+"""One part of a gear in the analysis: the model and mesher that its settings select, and its keys."""
 
 from __future__ import annotations
 

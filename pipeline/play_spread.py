@@ -1,4 +1,4 @@
-"""Bearing play as a random number, and how far the clearance that it opens may be off.
+"""Bearing play as a random variable, and the uncertainty of the clearance that it opens.
 
 Play is normal about the stated clearance, and cut off at c_max, where the involute model ends.
 """

@@ -1,4 +1,4 @@
-"""Which process made a thing, told apart from every other: machine and boot, pid namespace, pid, start.
+"""A unique identity of a process: machine and boot, pid namespace, pid, start time.
 
 A pid alone is not enough. The system gives it again; another container counts its own processes from 1
 and may have the same host name and the same folders; another machine may mount them.

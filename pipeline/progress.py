@@ -1,4 +1,4 @@
-"""Stages as they pass: a line each for the person who waits, and the seconds that each took itself."""
+"""Progress of the stages: one line each, and the seconds that each stage took."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An answer that each mesh makes better, solved as far as somebody asked."""
+"""A result that improves with each mesh, refined as far as requested."""
 
 from __future__ import annotations
 

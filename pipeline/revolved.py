@@ -1,4 +1,4 @@
-"""The fast model: the bodies of revolution that stand for a design's parts, solved on the meridian.
+"""The fast model: bodies of revolution that replace a design's parts, solved on the meridian.
 
 K_b of a flexspline with bolt holes lies between those of two bodies of revolution (`pipeline.enclosure`).
 Everything else leaves holes and keyway out, and drawn teeth are their plain ring. Every answer is

@@ -1,4 +1,4 @@
-"""Independent tasks in two processes: the second begins as a copy of this one, and sends what it finds.
+"""Independent tasks in two processes: the second is a fork of this one, and sends its results back.
 
 Copying a process costs some milliseconds where starting one that imports as much costs a second.
 """

@@ -1,4 +1,4 @@
-"""Where kept results lie on this machine."""
+"""The cache folder on this machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Peak stresses beside what the material bears: which comparison is one, and which limits are passed."""
+"""Peak stresses compared with material limits: valid comparisons, and limits that are exceeded."""
 
 from __future__ import annotations
 

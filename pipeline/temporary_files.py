@@ -1,4 +1,4 @@
-"""Unfinished files name the process that writes them; what a killed process left, the next one clears.
+"""Unfinished files have their process in the name; the next command deletes those of killed processes.
 
 A killed process cannot clean up. So that nobody has to guess what is rubbish, every unfinished file or
 folder of ours is called ``.flexspline-`` and the process (`pipeline.process_id`); those of processes that

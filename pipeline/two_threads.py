@@ -1,4 +1,4 @@
-"""Work that two threads share, each on its core: factorising lets go of Python's interpreter."""
+"""Work shared by two threads, each on its core: factorisation releases Python's interpreter lock."""
 
 from __future__ import annotations
 

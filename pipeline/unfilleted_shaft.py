@@ -1,4 +1,4 @@
-"""A shaft that no sweep meshes with its fillets: its K lies between those of two shafts without.
+"""A shaft whose fillets cannot be swept: its K lies between those of two shafts without fillets.
 
 Fillets of a few thousandths of the diameter ask for layers, rings and elements as thin, or leave no mesh at
 all; they hardly change K. Large ones do, and fTetWild is tried before they are left out.

@@ -1,4 +1,4 @@
-"""The ellipse of the wave generator on a solid model, on a mesh of its own."""
+"""The wave generator's ellipse imposed on a solid model, on a separate mesh."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a person sees and keeps: records, pictures, report, the command line."""
+"""Outputs: records, pictures, report, the command line."""

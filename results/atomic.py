@@ -1,4 +1,4 @@
-"""Files appear whole or not at all, and those of one answer together."""
+"""Files are written completely or not at all, and all files of one result together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The answer as a person reads it in a terminal."""
+"""The result as text for a terminal."""
 
 from __future__ import annotations
 

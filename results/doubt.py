@@ -1,4 +1,4 @@
-"""What a design file says of its own uncertainty, in words: stated, in part, or not at all."""
+"""The design file's own uncertainty in words: stated, in part, or not at all."""
 
 from __future__ import annotations
 

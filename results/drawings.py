@@ -1,4 +1,4 @@
-"""Which pictures and views there are of a run: what each shows, and what it depends on."""
+"""Pictures and views of a run: the content of each, and its inputs."""
 
 from __future__ import annotations
 

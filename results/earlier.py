@@ -1,4 +1,4 @@
-"""A fuller answer is not lost to a smaller one: `run`, then `backlash`, into the same folder."""
+"""Keeps a fuller earlier result if a command with fewer figures (`backlash`) writes to the same folder."""
 
 from __future__ import annotations
 

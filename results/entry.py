@@ -1,4 +1,4 @@
-"""Where the command begins and ends: little is loaded here, so that an early Ctrl-C is answered too.
+"""Entry point of the command: it imports little, so that an early Ctrl-C is handled too.
 
 A request to end (SIGTERM: a job scheduler, a container that stops) is answered as Ctrl-C is.
 """

@@ -1,4 +1,4 @@
-"""Exit statuses of the `flexspline` command; from 128 on as shells have them: 128 and a signal's number."""
+"""Exit statuses of the `flexspline` command; from 128 on as in shells: 128 plus the signal's number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of the files that each command writes; what is in their way is found before the work."""
+"""Names of the files that each command writes; obstacles are found before the work."""
 
 from __future__ import annotations
 

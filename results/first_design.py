@@ -1,4 +1,4 @@
-"""`flexspline init`: a first design file, a kind's own or in proportion to a catalogue's size."""
+"""`flexspline init`: a first design file, the default of its kind or scaled to a catalogue size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One command at a time writes to a folder; studies, which share their designs, may be several.
+"""Only one command at a time writes to a folder; studies may share one.
 
 The lock is the kernel's, on the folder itself (flock(2), Linux and macOS): it ends with its process, however
 that ends, so none is left over, and it leaves no file.

@@ -1,4 +1,4 @@
-"""Names of the whole gear's terms, which stand beside the backlash sum's."""
+"""Names of the whole gear's terms, for comparison with the backlash sum."""
 
 from __future__ import annotations
 

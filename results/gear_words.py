@@ -68,7 +68,7 @@ def _warning(warning: GearWarning) -> str:
         case CuttingFlanks(shape, start, overlap, most, depth):
             said = (
                 f"{shape} flanks cut into each other from {start:.0f}° off the major axis on, by up "
-                f"to {_rounded(overlap)} µm at {most:.0f}°: take the relieved shape or more clearance"
+                f"to {_rounded(overlap)} µm at {most:.0f}°: use the relieved shape or more clearance"
             )
             if depth is None:
                 return said
@@ -96,8 +96,8 @@ def _why_pressing(pressing: PressingFlanks) -> str:
             return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
         case LowRim(half_play, stroke):
             return (
-                f"half the play, {half_play:.3g} mm, lowers the rim's stroke of {stroke:.3g} mm, and teeth "
-                "off the major axis no longer clear"
+                f"half the play, {half_play:.3g} mm, reduces the rim's stroke of {stroke:.3g} mm; teeth off "
+                "the major axis then touch"
             )
         case "flanks_cut":
             return "the flanks cut into each other"
@@ -116,18 +116,19 @@ def _note(note: GearNote) -> str:
     match note:
         case HalvedBalls(count, computed):
             return (
-                f"the model has {computed} balls in place of {count}: an even number, half of them at each "
+                f"the model has {computed} balls instead of {count}: an even number, half of them at each "
                 "lobe"
             )
         case LowRatio(limit):
             return (
-                f"below a ratio of {limit:g} the model is too stiff: with thicknesses in proportion to the "
-                "pitch radius catalogues' gears of ratio 30 are about half as stiff (docs/whole-gear.md)"
+                f"below a ratio of {limit:g} the model is too stiff: catalogues' gears of ratio 30 are about "
+                "half as stiff as the model with thicknesses in proportion to the pitch radius "
+                "(docs/whole-gear.md)"
             )
         case RelievedFlanks(start, removed, end):
             return (
-                f"beyond {start:.0f}° from the major axis straight flanks would come closer again: relieved "
-                f"flanks are assumed, {_rounded(removed)} µm removed from each at {end:.0f}°"
+                f"beyond {start:.0f}° from the major axis the gap of straight flanks would decrease "
+                f"again: relieved flanks are assumed, {_rounded(removed)} µm removed from each at {end:.0f}°"
             )
         case ShapedFaces(removed):
             return (
@@ -136,26 +137,26 @@ def _note(note: GearNote) -> str:
             )
         case StraightFlanks(angle):
             return (
-                f"gaps are those of straight flanks of {angle:g}°, not of the drawn "
-                'ones; gear.flanks = "drawn" takes those'
+                f"gaps are computed for straight flanks of {angle:g}°, not for the "
+                'drawn flanks; gear.flanks = "drawn" uses the drawn flanks'
             )
         case LoadedLastPair(at):
             return (
                 f"the last pair of teeth within the working depth, {at:.0f}° from "
-                "the major axis, carries much: its force depends on gear.working_depth_mm; do not size "
-                "teeth by it; K2 and K3 depend on it too"
+                "the major axis, carries a large force, which depends on gear.working_depth_mm; do not "
+                "size teeth by this force; K2 and K3 depend on it too"
             )
         case TwoTorques(load, lost_motion):
             return (
-                f"the terms are at load.torque_Nm = {load:g}, the lost motion at "
+                f"the terms are computed at load.torque_Nm = {load:g}, the lost motion at "
                 f"{plain_number(lost_motion, 4)} N·m, {LOST_MOTION_TORQUE}: the terms' sum is not the lost "
                 "motion"
             )
         case JointClearances(alone, term):
             return (
                 f"flank clearance and bearing play act together: without the play alone the free angle is "
-                f"{_rounded(alone)} arcsec smaller; the terms remove the flank clearance first, which leaves "
-                f"{_rounded(term)} arcsec to the play"
+                f"{_rounded(alone)} arcsec smaller; the terms remove the flank clearance first, so the term "
+                f"of the play is {_rounded(term)} arcsec"
             )
         case FallingStiffness(lower, higher, share, preload):
             said = (

@@ -1,4 +1,4 @@
-"""What every command does: errors as one line, the design, the folder, the answer."""
+"""Common steps of every command: errors as one line, the design, the folder, the result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits in words: what a peak stress passes, and up to which torque the linear model is valid."""
+"""Limits in words: limits that a peak stress exceeds, and the torque limit of the linear model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.stress_limits import PassedLimit
 
 NOT_SOLVED = (
-    "without the peak stress of notches, which `flexspline run` solves and which may end it earlier"
+    "without the peak stress of notches, which `flexspline run` computes and which may lower it"
 )
 
 

@@ -1,4 +1,4 @@
-"""Meshes of whole parts for other programs, through meshio; the patches travel by name.
+"""Meshes of whole parts for other programs, through meshio, with named patches.
 
 Quadratic tetrahedra, and six-node triangles on every named patch, lengths in mm. meshio's `tetra10` is VTK's
 quadratic tetrahedron, the order that `TetMesh` has; meshio puts gmsh's order right itself, MED's not (below).

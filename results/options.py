@@ -1,4 +1,4 @@
-"""Words of the command line that several commands take."""
+"""Command-line options that several commands have."""
 
 from __future__ import annotations
 

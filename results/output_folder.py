@@ -1,4 +1,4 @@
-"""The folder that a command writes to: found wanting before the work, not after it."""
+"""The output folder of a command, checked before the work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A peak stress in words: whether it is the part's, and beside which limit it may stand."""
+"""A peak stress in words: whether it is valid for the part, and its comparison with a limit."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexspline.results.quantities import quantity
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""
 MEANING = (
-    "the stress still rises towards such an edge, so that the figure depends on the distance left out and "
+    "the stress still rises towards such an edge, so the figure depends on the excluded distance and "
     "is not a measure of the part's strength"
 )
 

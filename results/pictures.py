@@ -1,4 +1,4 @@
-"""All pictures of a run, drawn while it goes on, once for the same content, and kept.
+"""All pictures of a run, drawn during the run and cached by their content.
 
 Two processes draw (`results.renders.process`): one a solved part as soon as it is there; one the charts in
 the end, without VTK.

@@ -1,4 +1,4 @@
-"""Plain letters for terminals and files that lack the right ones."""
+"""Plain replacements for letters that a terminal or a file cannot show."""
 
 from __future__ import annotations
 

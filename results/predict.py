@@ -1,4 +1,4 @@
-"""What `import flexspline` offers of results: `predict`, which says in words what its reader should know."""
+"""The Python function `predict`, with its warnings in words."""
 
 from __future__ import annotations
 

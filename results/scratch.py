@@ -1,4 +1,4 @@
-"""One scratch folder for a process: what a killed command left in the temporary folder, the next clears."""
+"""One scratch folder per process; the next command deletes those of killed processes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words that begin a line or make a sentence."""
+"""Capital letters and full stops for sentences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM are answered at once.
+"""Immediate handling of Ctrl-C and SIGTERM.
 
 Python tells the main thread of a signal only when its call into a library returns, and other threads end at
 their next stage: seconds. The system tells a file descriptor at once, and a thread reads it.

@@ -1,4 +1,4 @@
-"""Standard output and error: letters that they lack, and writing to them that fails.
+"""Standard output and error: letters that they cannot show, and failed writes.
 
 A terminal gets what its encoding holds and plain letters for the rest. A file or a pipe in another encoding
 than UTF-8 gets ASCII, which reads the same in every encoding: ``flexspline init > design.toml`` is a design

@@ -1,4 +1,4 @@
-"""A command line that cannot be read is answered as any other wrong input: one line, exit status 2."""
+"""Errors of the command line are handled as any other wrong input: one line, exit status 2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Warnings of an answer: what is unusual in the design, what missed its tolerance, what is missing."""
+"""Warnings of a result: unusual values in the design, missed tolerances, missing figures."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ def test_the_words_beside_the_tables_hold() -> None:
     assert all(1.8 < K < 2.4 for K in by["30"][:3])  # "about twice too stiff"
     others = {(row[1], row[2]): float(row[5]) for row in rows_below("rows") if row[2] != "30"}
     off = {key: K3 for key, K3 in others.items() if abs(K3 - 1) > 0.3}
-    assert {size for size, _ in off} == {"14"}  # "the three of size 14 are 1.33 to 1.37"
+    assert {size for size, _ in off} == {"14"}  # "the three rows of size 14 are 1.33 to 1.37"
     assert (min(off.values()), max(off.values())) == (1.33, 1.37)
     thin = {row[0]: row[1:] for row in rows_below("ratio 30")}[
         "ring and race × 0.5, pressure angle 30"

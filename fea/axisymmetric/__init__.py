@@ -1,1 +1,1 @@
-"""Bodies of revolution: everything solved on the meridian, two-dimensional and fast."""
+"""Bodies of revolution, solved on the two-dimensional meridian."""

@@ -1,4 +1,4 @@
-"""The wave generator as it is: the rim rests on it and may lift off, it does not stick.
+"""Contact of the rim with the wave generator: without friction, and the rim may lift off.
 
 Torque enters at the two lobes; on the seat the contact force may only push: u_r ≥ 0, p ≥ 0, p u_r = 0, at
 equally spaced angles and at places along the seat (`seat`, `lift_off`). The answer scales with the

@@ -1,4 +1,4 @@
-"""The sparse stiffness of any harmonic from weak forms that are assembled once.
+"""The sparse stiffness of any harmonic, from weak forms that are assembled once.
 
 Every block of it is a combination of the nine forms ∫ f(v) g(u) r dA over f, g ∈ {∂/∂r, ∂/∂z, 1/r}, u the
 trial and v the test function: rows belong to v. Three of the nine are others transposed. All have one

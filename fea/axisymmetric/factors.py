@@ -1,4 +1,4 @@
-"""Direct solves of one matrix after the other whose entries lie at the same places, as those of harmonics."""
+"""Direct solves of several matrices with the same sparsity pattern, such as those of harmonics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A figure solved again and again, on meridian meshes that become finer and finer in boxes."""
+"""A figure solved repeatedly on meridian meshes that are refined in boxes."""
 
 from __future__ import annotations
 

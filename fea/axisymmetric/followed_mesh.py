@@ -1,4 +1,4 @@
-"""A meridian mesh that follows its outline."""
+"""A meridian mesh that is moved with its outline."""
 
 from __future__ import annotations
 

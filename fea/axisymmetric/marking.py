@@ -1,4 +1,4 @@
-"""Which triangles of a meridian are refined next."""
+"""Selects the triangles of a meridian that are refined next."""
 
 from __future__ import annotations
 

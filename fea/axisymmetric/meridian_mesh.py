@@ -1,4 +1,4 @@
-"""A triangle mesh of a meridian; each boundary edge knows its segment of the outline."""
+"""A triangle mesh of a meridian; each boundary edge has a reference to its segment of the outline."""
 
 from __future__ import annotations
 

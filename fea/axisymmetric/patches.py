@@ -1,4 +1,4 @@
-"""Which parts of a meridian's outline are held, which are driven, and what is left between them."""
+"""The held, driven and free parts of a meridian's outline."""
 
 from __future__ import annotations
 

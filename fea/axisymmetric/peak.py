@@ -1,4 +1,4 @@
-"""The largest von Mises stress among the points that count, looked for between nodes as well."""
+"""The largest von Mises stress outside the excluded zones, at nodes and between them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A stress field on finer and finer meshes of the meridian, until its peak is known.
+"""A stress field on refined meridian meshes, until its peak has converged.
 
-Refined where the energy is wrong, and where a stress that counts is.
+The mesh is refined where the energy error is large, and where the error of a relevant stress is large.
 """
 
 from __future__ import annotations

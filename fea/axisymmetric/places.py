@@ -1,4 +1,4 @@
-"""Fields on a meridian mesh, looked at anywhere in it."""
+"""Evaluates fields of a meridian mesh at any point."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stress amplitudes of a harmonic, smoothed at the nodes, and what the smoothing says of the error.
+"""Stress amplitudes of a harmonic, recovered at the nodes, and the error estimate of this recovery.
 
 The estimate is Zienkiewicz and Zhu's (Int. J. Numer. Meth. Eng. 24, 1987, 337-357).
 """

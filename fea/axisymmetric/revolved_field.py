@@ -1,4 +1,4 @@
-"""A solved harmonic of a body of revolution with its stresses, as the fea room hands it on."""
+"""A solved harmonic of a body of revolution with its stresses, as other packages use it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rim as its seat sees it: radial compliance under forces on the seat, one matrix per harmonic.
+"""Radial compliance of the rim under forces on its seat, one matrix per harmonic.
 
 Forces stand at equally spaced angles over half a turn (everything has period π, so only even harmonics
 occur) and at places along the seat. Over the angles the compliance is block circulant: the Fourier transform

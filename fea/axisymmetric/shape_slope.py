@@ -1,4 +1,4 @@
-"""dK/dp of a body of revolution under torque, from one solution: the adjoint way.
+"""dK/dp of a body of revolution under torque, from one solution by the adjoint method.
 
 K is the least energy over all fields with the given rotation, so its derivative with respect to the shape
 is that of the energy with the field held (the field is its own adjoint). The mesh follows the outline,

@@ -1,4 +1,4 @@
-"""What a thin layer on the free surface of a twisted body of revolution adds to its stiffness."""
+"""Added stiffness of a thin layer on the free surface of a twisted body of revolution."""
 
 from __future__ import annotations
 

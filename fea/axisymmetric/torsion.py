@@ -1,4 +1,4 @@
-"""Torsional stiffness of a body of revolution, between two bounds that are theorems."""
+"""Torsional stiffness of a body of revolution, with guaranteed bounds from both sides."""
 
 from __future__ import annotations
 

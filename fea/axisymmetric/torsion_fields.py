@@ -1,4 +1,4 @@
-"""The two scalar problems of a body of revolution under torque (Michell 1899), and what they prove.
+"""The two scalar problems of torsion (Michell 1899), which give the lower and the upper bound.
 
 Primal. With ψ = u_θ/r, every ψ that is 0 on `mount` and 1 on the driven patch gives
 

@@ -1,4 +1,4 @@
-"""Torsion of a body of revolution, kept so that its field can be looked at on another shape."""
+"""A solved torsion field of a body of revolution, stored so that it can be used for another shape."""
 
 from __future__ import annotations
 

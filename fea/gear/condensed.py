@@ -1,4 +1,4 @@
-"""A body of revolution seen from a few places: displacement there per force there, harmonic by harmonic.
+"""A body of revolution condensed to a few places: displacement per force, harmonic by harmonic.
 
 A `Port` is a way to push on the body's circles: nodal forces on the meridian in one direction, all of them
 together 1 N per radian. Everything repeats after half a turn (two lobes), so only even harmonics occur, and

@@ -1,4 +1,4 @@
-"""Gaps of flanks from their drawn shapes: where a tooth that moves and turns comes nearest to its space.
+"""Gaps between drawn flanks: the closest approach of a moving tooth and its space.
 
 Heights are over the pitch circles, which touch at full depth. A tooth's point (t, h), t its half thickness,
 stands at x + t + h β and h − y − t β in its space, β the tooth's turn against the space. The space's half

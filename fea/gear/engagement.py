@@ -1,4 +1,4 @@
-"""How long teeth hold: load presses them out of their spaces, and those that are out carry nothing.
+"""Limit of tooth engagement: load presses teeth out of their spaces, and these teeth carry nothing.
 
 A tooth's withdrawal is y = stroke − u_r of the rim + u_r of the circular spline. Beyond the working depth it
 is out, the others take its load, and they are pressed out in turn. At the torque where none is left the

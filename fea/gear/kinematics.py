@@ -1,4 +1,4 @@
-"""Where each tooth stands in its space while the wave generator stretches the rim and nothing is loaded.
+"""Position of each tooth in its space with the wave generator inserted and without load.
 
 φ from the major axis. The rim moves by w = w0 cos 2φ outwards and v = −(w0/2) sin 2φ along itself, as a thin
 ring that does not stretch (Timoshenko, Strength of Materials II, art. 14); a tooth's pitch point, h over the

@@ -1,4 +1,4 @@
-"""The flexspline as teeth and wave generator see it, condensed.
+"""The flexspline's rim, condensed to its contacts with teeth and wave generator.
 
 Teeth push at the pitch point, h outside the `mesh` patch, where the tooth goes with the rim's section: with
 the rim's rotation ω = (u_θ − ∂u_r/∂φ)/R, the pitch point moves by u_θ + h ω and u_r. Forces

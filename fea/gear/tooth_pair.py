@@ -1,4 +1,4 @@
-"""How far a pair of teeth yields along the normal of its flanks [mm/N].
+"""Compliance of a pair of teeth along the normal of its flanks [mm/N].
 
 Two straight-sided teeth loaded at the pitch point, in plane strain: the tooth itself, held at its root, by
 finite elements; its root in an elastic half plane (Cornell, J. Mech. Des. 103 (1981) 447-459); and the

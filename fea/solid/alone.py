@@ -1,4 +1,4 @@
-"""Large solid models are assembled and solved one at a time: whoever waits does not add up memory."""
+"""Only one large solid model is solved at a time, to limit memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edges of tetrahedra halved, with all that they belong to.
+"""Bisection of tetrahedron edges, with all elements and facets that contain them.
 
 Edges are ranked by length, of equal ones by number. Each tetrahedron is halved at the highest of its edges
 that are asked for, as in bisection of longest edges (Rivara, Int. J. Numer. Methods Eng. 20, 1984, 745-756),

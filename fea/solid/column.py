@@ -1,4 +1,4 @@
-"""Where a part with bolt holes is no body of revolution: one column of its meridian.
+"""The column of the meridian in which a part with bolt holes is not a body of revolution.
 
 Around the bolt circle the material fills a rectangle of the (r, z) plane, from a bore, the axis or an outer
 wall to an `interface` beyond the holes. There the part is its plan, with the holes, extruded in z; all the

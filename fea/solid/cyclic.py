@@ -1,4 +1,4 @@
-"""One wave of a part with n repeats, solved on half a repeat.
+"""One cyclic wave of a part with n repeats, solved on half a repeat.
 
 The load is even or odd at angle 0, so of a wave u = a + i b the one field is antisymmetric there and the
 other symmetric, and at the other plane of half a repeat the same holds for exp(−iγ) u, γ = π p/n. With w =

@@ -1,4 +1,4 @@
-"""The torsion case of a solid model as a CalculiX/Abaqus input deck, for a second opinion.
+"""The torsion case of a solid model as a CalculiX/Abaqus input deck, for an independent check.
 
 The same nodes, quadratic tetrahedra (C3D10 numbers its ten nodes as `TetMesh` does), patches and
 supports as `fea.solid.load_cases.torsion`. Node and element numbers in the deck count from 1.

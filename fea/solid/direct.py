@@ -1,4 +1,4 @@
-"""Sparse factorisation of symmetric positive definite matrices: Pardiso, or SuperLU where MKL is not.
+"""Sparse factorisation of symmetric positive definite matrices: by Pardiso, or SuperLU without MKL.
 
 A large system's factors are in single precision, half the memory and half the time, and precondition
 conjugate gradients in double.

@@ -1,4 +1,4 @@
-"""Quadratic tetrahedra through scikit-fem: meshes, bases, how much they are bent."""
+"""Quadratic tetrahedra through scikit-fem: meshes, bases, curvature of elements."""
 
 from __future__ import annotations
 

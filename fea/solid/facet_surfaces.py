@@ -1,4 +1,4 @@
-"""Which surface of a part each facet of a mesh lies on, where corners are computed on them."""
+"""The surface of each facet of a mesh whose corners are computed on the surfaces."""
 
 from __future__ import annotations
 

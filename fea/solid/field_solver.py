@@ -1,4 +1,4 @@
-"""The field that is solved on a part's solid meshes, and what a mesh tells of K by it."""
+"""The solver of a field on a part's solid meshes, and the value of K from each mesh."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A shaft's fillets as its layers see them."""
+"""Fillets of a shaft in its layered mesh."""
 
 from __future__ import annotations
 

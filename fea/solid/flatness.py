@@ -1,4 +1,4 @@
-"""How flat a mesh's elements are: an iteration that smooths node by node is slow in flat ones."""
+"""Flatness of a mesh's elements: node-by-node smoothing converges slowly in flat elements."""
 
 from __future__ import annotations
 

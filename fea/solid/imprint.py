@@ -1,4 +1,4 @@
-"""Patch edges on smooth surfaces, put into a mesher's mesh: it keeps corners, but no line on a plane.
+"""Adds patch edges on smooth surfaces to a mesher's mesh, which keeps corners but no lines on a plane.
 
 Where mesh edges cross a patch edge, near ends move onto it and the other edges are halved there with all
 their tetrahedra, after the warping and cutting of Labelle and Shewchuk, Isosurface stuffing, ACM

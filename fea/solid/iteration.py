@@ -1,4 +1,4 @@
-"""Conjugate gradients that say when they stop early, and what they learnt about the spectrum."""
+"""Conjugate gradients that report an early stop, and the spectrum that they estimate."""
 
 from __future__ import annotations
 

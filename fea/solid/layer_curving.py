@@ -1,4 +1,4 @@
-"""Ten-node tetrahedra of a shaft's layers: curved edges, halved where they bend an element too far."""
+"""Ten-node tetrahedra of a shaft's layers: curved edges, bisected if they bend an element too far."""
 
 from __future__ import annotations
 

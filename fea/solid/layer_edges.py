@@ -1,4 +1,4 @@
-"""Edges of a tetrahedral mesh's boundary where two surfaces of a part meet."""
+"""Boundary edges of a tetrahedral mesh at which two surfaces of a part meet."""
 
 from __future__ import annotations
 

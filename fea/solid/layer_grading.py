@@ -1,4 +1,4 @@
-"""Edges of a shaft's layers halved until none is longer than the grading asks for."""
+"""Bisects edges of a shaft's layers until all are shorter than the grading requires."""
 
 from __future__ import annotations
 

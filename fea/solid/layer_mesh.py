@@ -1,4 +1,4 @@
-"""The coarsest mesh of a shaft's layers: their prisms cut into tetrahedra, each facet on its surface."""
+"""The coarsest layered mesh of a shaft: prisms cut into tetrahedra, each facet with its surface."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mesh of a shaft's layers made finer where its solution's error is.
+"""Refines a layered mesh of a shaft at the places of its solution's error.
 
 Elements with the largest errors are halved in rounds. After each, the parts have the errors that theory
 promises, so that a singular edge with most of the error is refined several times in one mesh.

@@ -1,4 +1,4 @@
-"""Meshes of shafts whose holes or keyway no sweep about the axis makes, without a mesher.
+"""Layered meshes, without a mesher, of shafts whose holes or keyway cannot be swept about the axis.
 
 Each cross-section's prisms along the axis (`fea.solid.layers`), cut into tetrahedra; then edges are halved
 where the grading asks for shorter ones, new nodes on the exact surfaces. The same design gives the same

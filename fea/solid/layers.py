@@ -1,4 +1,4 @@
-"""A shaft as layers along the axis, each with one cross-section: prisms over one plan for all of them.
+"""A shaft as layers along the axis, each with one cross-section; all prisms use one common plan.
 
 The plan has every line of every cross-section as mesh edges; a layer keeps the prisms inside its own. A
 fillet is a layer whose height follows the arc.

@@ -1,4 +1,4 @@
-"""Load cases of a solid model: what is held, what is driven, what is loaded, and the stiffness of it."""
+"""Load cases of a solid model: supports, prescribed motion, loads, and the resulting stiffness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lobe load on a solid mesh: all of the part's field, or only what its bolt holes change."""
+"""The lobe load on a solid mesh: the whole field, or only the change caused by bolt holes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a solve will need and what the machine has, before it is begun.
+"""Estimates the memory of a solve, and compares it with the machine's memory before the start.
 
 Fits to Pardiso's own figures (iparm 16 and 17) and to resident memory, six-hole cup of 26 000 to 1.1
 million unknowns, in docs/decisions.md.

@@ -1,4 +1,4 @@
-"""What a mesh must hold before anything is solved on it: volume, patch areas, planes of symmetry."""
+"""Checks of a mesh before the solve: volume, patch areas, planes of symmetry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A triangulated sector of a plan in which every line of it is made of mesh edges.
+"""A triangulated sector of a plan; every line of the plan consists of mesh edges.
 
 Delaunay's in the coordinates (ln r, φ): a conformal map, in which rings about the axis are straight and
 a sector is a rectangle. Lines are halved until no vertex lies within an edge's diametral circle

@@ -1,4 +1,4 @@
-"""Lines and circles' parts of a plan, and where they cross."""
+"""Lines and circular arcs of a plan, and their intersections."""
 
 from __future__ import annotations
 

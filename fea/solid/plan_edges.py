@@ -1,4 +1,4 @@
-"""The edges that a plan's lines are made of, in the map (ln r, φ), and how they are halved."""
+"""The mesh edges of a plan's lines, in the map (ln r, φ), and their bisection."""
 
 from __future__ import annotations
 

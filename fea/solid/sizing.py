@@ -1,4 +1,4 @@
-"""Where the mesh must be fine: edge length grows with the distance from the edges that concentrate stress."""
+"""Mesh size: the edge length grows with the distance from edges with stress concentration."""
 
 from __future__ import annotations
 

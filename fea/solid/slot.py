@@ -1,4 +1,4 @@
-"""A keyway in a swept shaft: the revolved mesh without the prisms of the slot, bent onto its walls.
+"""A keyway in a swept shaft: prisms of the slot are removed, and the mesh is moved onto its walls.
 
 In the mesh the slot is a block of prisms: radii beyond that of the floor's corners, z beyond the slot's end,
 angles up to one of the mesh's own. Angles are turned and radii are pressed inwards until two of the block's

@@ -1,4 +1,4 @@
-"""Whether a swept shaft's mesh can be bent onto its keyway, and over which length."""
+"""Checks whether a swept mesh of a shaft can be moved onto its keyway, and over which length."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Put boundary nodes back onto the exact CAD surfaces, from which the mesher strays by its envelope."""
+"""Projects boundary nodes onto the exact CAD surfaces; the mesher places them within a tolerance."""
 
 from __future__ import annotations
 

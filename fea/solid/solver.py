@@ -1,4 +1,4 @@
-"""Sparse solution with prescribed unknowns, by factors or by iteration, and the checks that follow."""
+"""Sparse solution with prescribed unknowns, by factors or by iteration, and the checks of the result."""
 
 from __future__ import annotations
 

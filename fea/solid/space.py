@@ -1,4 +1,4 @@
-"""A solid mesh as scikit-fem has it: quadratic, its patches as named boundaries, and its numbers.
+"""A solid mesh as a scikit-fem space: quadratic, with its patches as named boundaries.
 
 `TetMesh` numbers middle nodes as its maker did (an unfolded sector copy by copy, a test's brick by bricks),
 scikit-fem by its own edges. Here, and nowhere else, one is turned into the other.

@@ -1,4 +1,4 @@
-"""What bolt holes and a keyway change of a part, solved alone.
+"""The change of a part's field caused by bolt holes and a keyway, solved alone.
 
 The part without these cuts is a body of revolution, solved on its meridian: its field is u₀. The part's own
 field is u₀ + v: v is 0 where the part is held or turned, and its tractions take those of u₀ off the walls of

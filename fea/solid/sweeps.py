@@ -1,4 +1,4 @@
-"""How a part can be swept: about the axis, with holes and a keyway in plain places, or along it."""
+"""Ways to sweep a part: about the axis, with holes and a keyway in plain places, or along the axis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How fine the meridian and the holes' plan of a swept part are: by grading, and beside chosen places."""
+"""Mesh size of a swept part's meridian and hole plan: by grading, and near chosen places."""
 
 from __future__ import annotations
 

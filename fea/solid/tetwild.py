@@ -1,4 +1,4 @@
-"""fTetWild in a child process: it is C++ that can hang or crash, so it gets a time limit.
+"""fTetWild in a child process with a time limit, because its C++ code can hang or crash.
 
 Run as ``python -m flexspline.fea.solid.tetwild IN.npz OUT.npz PARENT`` it is the child; PARENT is its
 parent's process number, without which it does not go on.

@@ -1,4 +1,4 @@
-"""Torsion on a solid mesh: all of the part's field, or only what its holes and keyway change."""
+"""Torsion on a solid mesh: the whole field, or only the change caused by holes and keyway."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Large systems: conjugate gradients with quadratic elements smoothed and linear ones solved exactly.
+"""Conjugate gradients for large systems: quadratic elements are smoothed, linear ones solved exactly.
 
 The linear elements on the same corners have an eighth of the unknowns. Their matrix Pᵀ K P, with P
 the interpolation of middle nodes from corners, is factorised; what it cannot see is smoothed by a

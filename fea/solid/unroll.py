@@ -1,4 +1,4 @@
-"""Meshing space: a sector of a part with its angle unrolled into a length.
+"""The meshing space: a sector of a part with its angle unrolled into a length.
 
 A ring-shaped part becomes a prism there: cylinders become planes, which the mesher keeps exactly, and
 an unrolling radius below the tube's makes elements longer around the circumference than along the

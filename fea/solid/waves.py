@@ -1,4 +1,4 @@
-"""What has n equal repeats about the axis, as waves that a turn by one repeat multiplies by a phase.
+"""Cyclic waves of a part with n equal repeats: a turn by one repeat multiplies a wave by a phase.
 
 f = Σ f_p over p = 0 … n − 1 with f_p(φ) = 1/n Σ_j exp(−2πi p j/n) f(φ + 2π j/n), so that f_p(φ + 2π/n) =
 exp(2πi p/n) f_p(φ). Of a real f the waves p and n − p are conjugate: half of them say all

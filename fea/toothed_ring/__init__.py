@@ -1,1 +1,1 @@
-"""The toothed ring of a flexspline, and the plain ring that is as stiff."""
+"""The toothed ring of a flexspline, and the equivalent plain ring."""

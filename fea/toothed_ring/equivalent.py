@@ -1,4 +1,4 @@
-"""The plain ring that is as stiff as a toothed one."""
+"""The plain ring with the same stiffness as a toothed ring."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The best design of a study on the wave generator, as `run` computes it: what its picture shows."""
+"""The best design of a study on the wave generator, computed like in `run`, for its picture."""
 
 from __future__ import annotations
 

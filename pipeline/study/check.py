@@ -1,4 +1,4 @@
-"""What a study must keep beyond its schema: keys of the design, spans, figures, and what methods need."""
+"""Checks of a study beyond its schema: keys of the design, ranges, figures, and needs of the methods."""
 
 from __future__ import annotations
 

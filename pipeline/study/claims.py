@@ -1,4 +1,4 @@
-"""Who has which design of a study: what is known of its trials, kept up by what changed.
+"""Distribution of a study's designs among processes, updated from the changes in the database.
 
 To claim a design costs as much in a study of 100,000 designs as in one of 100.
 """

@@ -1,4 +1,4 @@
-"""How the backlash sum moves with each clearance: the terms that no dimension of a part touches."""
+"""Derivatives of the backlash sum with respect to each clearance."""
 
 from __future__ import annotations
 

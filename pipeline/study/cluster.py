@@ -1,4 +1,4 @@
-"""Where evaluations run: processes of this machine, or the cluster of a Dask scheduler."""
+"""Where designs are evaluated: in processes of this machine, or on the cluster of a Dask scheduler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study's database, opened or made."""
+"""Opens or creates a study's database."""
 
 from __future__ import annotations
 

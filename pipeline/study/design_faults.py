@@ -1,4 +1,4 @@
-"""Errors that say what is wrong with one design of a study, and leave the other designs as they are."""
+"""Errors that concern one design of a study only; the other designs continue."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The loop of a study: claim a design, have it evaluated, store its row; until all are done."""
+"""The loop of a study: claim a design, evaluate it, store its row; until all are done."""
 
 from __future__ import annotations
 

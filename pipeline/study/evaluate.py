@@ -1,4 +1,4 @@
-"""One design of a study: its figures by the fast model, or why there are none.
+"""One design of a study: its figures by the fast model, or the reason why there are none.
 
 The fast model (`pipeline.revolved`): K_b of a flexspline with bolt holes is enclosed, K_e of a shaft with
 holes corrected where a study gives a factor (`pipeline.study.holes`); stresses leave holes out.

@@ -1,4 +1,4 @@
-"""Which figures a study can ask for, by their keys in result.json, and which solve gives them."""
+"""Figures that a study can use, by their keys in result.json, and the solve that gives each of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What bolt holes and keyway of the shaft do to K_e, from one solid solve of the study's nominal design.
+"""Effect of the shaft's bolt holes and keyway on K_e, from one solid solve of the nominal design.
 
 The fast model's shaft has none. The solid model of the nominal design tells how much compliance they add, as
 a share of the compliance L/(G·J) of the pieces that they cut: the flange, and the keyway's length of the last

@@ -1,4 +1,4 @@
-"""Sobol indices with intervals, and when a sample carries them.
+"""Sobol indices with intervals, and the conditions under which a sample gives them.
 
 First order S_i: the share of the variance that input i explains alone; total T_i: with all it acts together
 with (Saltelli et al., Comput. Phys. Commun. 181, 2010, 259-270).

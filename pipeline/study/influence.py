@@ -1,4 +1,4 @@
-"""What moves the figures of a study's designs, and what holds its best design back."""
+"""Influences on the figures of a study's designs, and the limits that stop its best design."""
 
 from __future__ import annotations
 

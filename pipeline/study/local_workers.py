@@ -1,4 +1,4 @@
-"""Worker processes of this machine, each at the end of its own pipe: none of them listens.
+"""Worker processes of this machine, each connected by its own pipe: none of them opens a port.
 
 A process pool of the standard library is lost as a whole when one process dies, and Dask's local cluster
 listens on the loopback, where every user of the machine reaches it.

@@ -1,4 +1,4 @@
-"""The last part of an optimisation: steps about the best design, shorter while none is better.
+"""The last part of an optimisation: steps around the best design, shorter while none is better.
 
 TPE finds the right region and then closes in slowly: a tenth of its candidates are drawn from wide kernels
 for good. A (1+1) evolution strategy with Rechenberg's rule (a success lengthens the step, failures shorten

@@ -1,4 +1,4 @@
-"""What a study found: its rows, which keep to the constraints, which are best."""
+"""Results of a study: its rows, the designs that meet the constraints, the best designs."""
 
 from __future__ import annotations
 

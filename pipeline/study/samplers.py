@@ -1,4 +1,4 @@
-"""Optuna's samplers, each trial's drawn from its own stream of random numbers.
+"""Optuna's samplers; each trial has its own stream of random numbers.
 
 A sampler with one seed would repeat its first suggestions after every restart, and in every process that
 shares the study. Seeded by (study's seed, trial's number) each trial has its own, whoever asks for it.

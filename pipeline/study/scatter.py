@@ -1,4 +1,4 @@
-"""What a tolerance study tells: distribution, Sobol indices, and what a tighter tolerance buys.
+"""Results of a tolerance study: distribution, Sobol indices, and the gain from tighter tolerances.
 
 All three come from one quadratic surface where that leaves every index known; else the distribution and
 the indices come from the sample, and there is no tightening; indices that neither knows are not given.

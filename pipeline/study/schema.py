@@ -1,4 +1,4 @@
-"""The study file's schema: frozen, strict; what one key alone must hold stands here."""
+"""The study file's schema: immutable, strict; with the checks of single keys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""dK/dp of one dimension, as two ways found it."""
+"""dK/dp of one dimension, found by two methods."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The design that a study begins with, solved like its rows: what the best designs are compared with."""
+"""The first design of a study, solved like its rows: the reference for the best designs."""
 
 from __future__ import annotations
 

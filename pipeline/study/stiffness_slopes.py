@@ -1,4 +1,4 @@
-"""dK/dp of every dimension of one design, found in two ways that share no mesh.
+"""dK/dp of every dimension of one design, found by two methods that share no mesh.
 
 First from the energy with the field held (`fea.axisymmetric.shape_slope`), from one solution. Then from
 K solved again on either side, with two step sizes and Richardson's extrapolation. Both by the axisymmetric

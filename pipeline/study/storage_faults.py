@@ -1,4 +1,4 @@
-"""What a study's database and its libraries raise, as one error in plain words."""
+"""Errors of a study's database and its libraries, as one error in plain words."""
 
 from __future__ import annotations
 

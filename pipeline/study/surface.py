@@ -1,4 +1,4 @@
-"""A quadratic surface through the designs of a tolerance study, and what it says of the variance.
+"""A quadratic surface through the designs of a tolerance study, and the variance that it explains.
 
 The surface is a polynomial chaos of degree 2: products of polynomials that are orthonormal under each
 input's own distribution, so that the squares of its coefficients are shares of the variance (Sudret,

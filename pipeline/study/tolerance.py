@@ -1,4 +1,4 @@
-"""What a design may be off by, through the whole analysis: the inputs that scatter and their samples.
+"""Uncertain inputs of a tolerance study and their samples.
 
 Saltelli's scheme (Comput. Phys. Commun. 181, 2010, 259-270): two Sobol-sequence samples A and B of N points,
 and for each input a copy of A with that input from B, N(k + 2) designs in all.

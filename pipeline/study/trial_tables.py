@@ -1,4 +1,4 @@
-"""Optuna's tables, read by what changed and written many trials at a time.
+"""Optuna's tables: changes are read, and many trials are written at a time.
 
 Optuna's own calls make one transaction for each trial, and one more for each of its attributes: three a
 design, each some milliseconds of the disk. Its `Study.get_trials` hands over all trials for every question.

@@ -1,4 +1,4 @@
-"""The other end of a local study's pipe: a process that reads calls and writes what they return.
+"""The worker process of a local study: it reads calls from a pipe and returns their results.
 
 Nothing listens, so nobody but the process that started it can give it work: calls come on its standard
 input, answers go to its standard output, each a frame of eight bytes of length and that many of pickle.

@@ -1,1 +1,1 @@
-"""What a person sees of a diagnosis."""
+"""Outputs of a diagnosis."""

@@ -1,4 +1,4 @@
-"""The next measurement in words: what to do, and what it would settle."""
+"""The next measurement in words: what to do, and what it distinguishes or confirms."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from flexspline.results.diagnosis.words import title_of
 
 CONFIRMS = {
     YOUNGS_MODULUS: "a tensile or resonance test of the same bar gives E directly",
-    SERIES: "clamp a solid dummy in the same fixture: any twist is then the fixture's",
+    SERIES: "clamp a solid dummy in the same fixture: any twist then comes from the fixture",
     LOAD_ZONE: "specimens with another ring width, as the lobes' effect depends on it most",
 }
 """What confirms a cause that specimens show."""
@@ -88,8 +88,8 @@ DOING: Mapping[DoingKind, str] = {
     "a torque cell with hysteresis as wide as before",
     "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
     "both ways",
-    "read_torque_zero": "take the load off the torque cell before and after the record, and every few "
-    "cycles, and write down what it reads",
+    "read_torque_zero": "unload the torque cell before and after the record, and every few "
+    "cycles, and write down its reading",
     "same_ends": f"the same end points {TIMES_OVER} times over",
     "other_ends": "end points at ± {torques} N·m",
     "closed_sweep": "a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",

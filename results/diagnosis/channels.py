@@ -1,4 +1,4 @@
-"""Channels of a record, and what may be varied, in words: the one table of them."""
+"""Names of a record's channels and of design keys in words: the one table of them."""
 
 from __future__ import annotations
 

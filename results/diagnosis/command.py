@@ -1,4 +1,4 @@
-"""`flexspline diagnose` and `flexspline predict`: their words of the command line, and whom they ask."""
+"""`flexspline diagnose` and `flexspline predict`: their command-line options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A diagnosis as a person reads it in a terminal."""
+"""A diagnosis as text for a terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a record was used and what it calibrates, in words and as JSON."""
+"""The data used from a record and its calibration, in words and as JSON."""
 
 from __future__ import annotations
 

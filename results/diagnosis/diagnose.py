@@ -1,4 +1,4 @@
-"""What `flexspline diagnose` does: stiffnesses, diagnosis, files, words."""
+"""Steps of `flexspline diagnose`: stiffnesses, diagnosis, files, text."""
 
 from __future__ import annotations
 

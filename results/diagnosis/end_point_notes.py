@@ -1,4 +1,4 @@
-"""End points: what else can and cannot be concluded, with the numbers."""
+"""Notes on end points: limits of the conclusions, with the numbers."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
     common, std = analysis.common
     if len(analysis.units) > 1:
         notes.append(
-            f"common to all units: {signed(common, 1)} ± {std:.1f} arcsec of gap, within the stated "
-            "uncertainty by its prior; the rest is each unit's own"
+            f"common to all units: {signed(common, 1)} ± {std:.1f} arcsec of gap (the stated "
+            "uncertainty is its prior); the rest differs from unit to unit"
         )
     mids = analysis.mids
     told = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
     notes.append(
-        f"mid positions {told} arcsec: the symmetric model predicts 0, but where an angle reading has its "
-        "zero is free for each unit, so they neither support nor refute it; stiffness that differs with "
+        f"mid positions {told} arcsec: the symmetric model predicts 0, but each unit's angle zero is "
+        "unknown, so the mid positions cannot confirm or reject this; stiffness that differs with "
         f"direction could move one by at most {mids.asymmetry_reach_arcsec:.1f} arcsec"
         + ("" if analysis.several_torques else ", and only a second torque would show it")
     )

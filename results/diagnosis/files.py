@@ -1,4 +1,4 @@
-"""All files of a diagnosis: made first, written when everything is there."""
+"""All files of a diagnosis: prepared first, written when all are complete."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which input of the whole gear explains what its curve leaves of a sweep: record and sentences."""
+"""Which input of the whole gear explains how a sweep differs from its curve: record and sentences."""
 
 from __future__ import annotations
 
@@ -63,28 +63,29 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
         )
     if found.outcome == "unknown":
         return (
-            f"no one or two inputs of the gear explain the {found.remainder_arcsec:.3g} arcsec rms that its "
-            f"curve leaves at {found.places} torques" + "".join(_nearest(found)),
+            f"no single input and no pair of inputs of the gear explains the {found.remainder_arcsec:.3g} "
+            f"arcsec rms between its curve and the readings at {found.places} torques"
+            + "".join(_nearest(found)),
         )
     if found.outcome == "pair":
         first, *more = found.pairs
         said = [
-            "no single input of the gear explains what its curve leaves, two together do: "
+            "no single input of the gear explains the difference from its curve; two together do: "
             f"{_both(first)}{_gain(found)}"
         ]
         if more:
             said.append(
-                f"as well as these fit {'; or '.join(_both(pair) for pair in more)}: measure one of "
-                "them itself"
+                f"other pairs fit as well: {'; or '.join(_both(pair) for pair in more)}; measure one "
+                "of these inputs directly"
             )
         return tuple(said)
     best = found.fitted[0]
     said = [
-        f"{_value(best)} explains what the gear's curve leaves, all else as drawn{_gain(found)}"
+        f"{_value(best)} explains the difference from the gear's curve, all else as drawn{_gain(found)}"
     ]
     if found.rivals:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
-        said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
+        said.append(f"others fit as well as {best.key}: {others}; {_next(found)}")
     return tuple(said)
 
 
@@ -92,9 +93,8 @@ def _nearest(found: GearIdentification) -> Iterator[str]:
     """Of the inputs that move the curve, if any does."""
     for best in found.fitted[:1]:
         yield (
-            f"; nearest is {best.key} = {best.value:.3g} {best.unit}, with which the curve still lies "
-            f"{_deviations_off(best, found.places):.2g} standard deviations off the readings (root mean"
-            " square)"
+            f"; the nearest is {best.key} = {best.value:.3g} {best.unit}: the curve still deviates from the "
+            f"readings by {_deviations_off(best, found.places):.2g} standard deviations (root mean square)"
         )
 
 
@@ -111,7 +111,7 @@ def _both(pair: FittedPair) -> str:
 
 
 def _value(one: FittedInput) -> str:
-    limit = ", the end of what is possible" if one.at_limit else ""
+    limit = ", the limit of what is possible" if one.at_limit else ""
     return (
         f"{one.key} = {one.value:.4g} ± {one.std:.2g} {one.unit} (nominal {one.nominal:.4g}{limit})"
     )
@@ -128,7 +128,9 @@ def _gain(found: GearIdentification) -> str:
 
 def _next(found: GearIdentification) -> str:
     if found.apart is None:
-        return "no torque up to twice the largest tells them apart, so measure one of them itself"
+        return (
+            "no torque up to twice the largest distinguishes them, so measure one of them directly"
+        )
     return (
         f"at {found.apart.torque_Nm:.3g} N·m they differ by {found.apart.difference_arcsec:.2g} arcsec, "
         "so measure there"

@@ -1,4 +1,4 @@
-"""What a reader should know of an extended model before its figures are used, one line each."""
+"""Warnings before an extended model is used, one line each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a reader should know of how a record was used, one line each."""
+"""Notes on the use of a record, one line each."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffn
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 """Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
 NOT_SOUGHT = (
-    "which input of the gear explains the rest was not sought: that takes one unit, loaded and unloaded at "
-    "both signs of torque at three sizes of torque at least"
+    "no input of the gear was sought that explains the rest: this needs one unit, loaded and unloaded at "
+    "both signs of torque, at three torques at least"
 )
 
 
 def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """How the file was read, and notes of the kind that was measured."""
+    """How the file was read, and notes for this kind of measurement."""
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
         "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
@@ -64,7 +64,7 @@ def _scaled(prediction: Prediction) -> str:
     if prediction.bend is None or prediction.measured_bend is None:
         return ""
     most = max(map(abs, prediction.measured_bend.angle_arcsec))
-    return f"; this record's by {most:.3g} arcsec, by the same factor as its slope"
+    return f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
@@ -80,8 +80,8 @@ def _held_rows(count: int) -> list[str]:
     if not count:
         return []
     return [
-        f"the angle is read more slowly than rows are written: {count} rows that repeat the angle before "
-        "are left out: the torque has changed since that reading"
+        f"the angle is read more slowly than rows are written: {count} rows that repeat the previous "
+        "angle are left out, because the torque has changed since that reading"
     ]
 
 
@@ -149,8 +149,8 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
         return []
     return [
         f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
-        f"some {1 / (1 - noise.memory):.0f} rows; an effect that has no form in torque, time or position "
-        "would look like that"
+        f"some {1 / (1 - noise.memory):.0f} rows; an effect without a form in torque, time or position "
+        "would look the same"
     ]
 
 
@@ -160,14 +160,14 @@ def _rounding_notes(explained: ExplainedSweep) -> list[str]:
     angle = rounding_of_angle(explained.prepared, explained.identified.fit)
     if angle.is_seen:
         found.append(
-            f"the angle is read in steps of {angle.step:.3g} arcsec: what rounding leaves, "
+            f"the angle is read in steps of {angle.step:.3g} arcsec: the rounding error, "
             f"{angle.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the angle; "
-            "more noise, or a finer encoder, would show less of it"
+            "more noise, or a finer encoder, would reduce it"
         )
     torque = rounding_of_torque(explained.prepared, explained.identified.fit)
     if torque.is_seen:
         found.append(
-            f"the torque is read in steps of {torque.step:.3g} N·m: what rounding leaves, "
+            f"the torque is read in steps of {torque.step:.3g} N·m: the rounding error, "
             f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
     return found
@@ -185,9 +185,9 @@ def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
 
 def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
     chosen = analysis.chosen
-    noise = f"one stiffness is taken to be good to {100 * float(chosen.noise.mean()):.2g} %"
+    noise = f"the noise of one stiffness is taken as {100 * float(chosen.noise.mean()):.2g} %"
     if analysis.race.data.std is None:
-        noise += ", which the scatter says, as the file states none"
+        noise += ", from the scatter, as the file states none"
     found = [noise]
     if analysis.part_guessed_by is not None:
         part = analysis.part[0]
@@ -203,8 +203,8 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
         if s is not None and term.owner not in chosen.named:
             change = f"{value:+.2g}".replace("-", "−")
             found.append(
-                f"{s.key} {change} mm would suit the data; that is within ± {s.tolerance_mm:g} mm of "
-                "ISO 2768-m and no finding"
+                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm of "
+                "ISO 2768-m and not a finding"
             )
     how = (
         "solved with their holes"

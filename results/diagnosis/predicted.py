@@ -1,4 +1,4 @@
-"""A prediction with what its reader should know, in words."""
+"""A prediction with its warnings, in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `flexspline predict` does: the input's columns, the predicted angle and its deviation beside them."""
+"""Steps of `flexspline predict`: the input's columns with the predicted angle and its deviation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a reader of a prediction should know: units and rows that the model's record does not have."""
+"""Warnings of a prediction: units and rows that the model's record does not have."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _outside(rows: RowsBeyond) -> str:
         here, there = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
         return (
             f"are slower than measured: torque in this file moves by as little as {here}, in the model's "
-            f"record by {there} or more; what of the model is rate dependence is less certain there"
+            f"record by {there} or more; the model's rate dependence is less certain there"
         )
     words, unit = SPANS[rows.channel]
     here, there = (

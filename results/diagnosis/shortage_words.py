@@ -1,4 +1,4 @@
-"""Why a measurement says nothing, in words."""
+"""Why a measurement is not sufficient, in words."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ def shortage_words(shortage: Shortage) -> str:
     """A clause."""
     match shortage:
         case ConstantTorque():
-            return "the torque is constant, so neither stiffness nor gap can be seen"
+            return "the torque is constant, so neither stiffness nor gap can be determined"
         case FewTorques():
             return f"fewer than {shortage.wanted} different torques"
         case FewRows(count, wanted):
-            beyond = f"only {count} rows lie outside the gap's crossing and the torque's turns"
+            beyond = f"only {count} rows lie outside the gap's crossing and the torque's reversals"
             return f"{beyond}; {wanted} are needed"
         case FewSpecimens(count, wanted):
             some = f"{count} specimen{'s' if count != 1 else ''}"

@@ -1,4 +1,4 @@
-"""What the slope of a sweep may come from besides the gear, in words."""
+"""Possible reasons for the slope of a sweep other than the gear, in words."""
 
 from __future__ import annotations
 

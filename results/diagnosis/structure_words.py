@@ -1,4 +1,4 @@
-"""Structure without a name in words: what it is like, and which limit it breaks."""
+"""Unexplained structure in words: its form, and the limit that it exceeds."""
 
 from __future__ import annotations
 
@@ -71,14 +71,14 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
 ANYWHERE: Mapping[FormKind, str] = {
     "jumps": "jumps while the torque changes; stick-slip, or friction that the model does not "
     "describe",
-    "comes_back": "a misfit at the same torques in every cycle",
-    "remainder": "what the best model leaves",
-    "slow_noise": "noise that wanders slowly, too large to compare with a simulation",
+    "comes_back": "the same misfit at the same torques in every cycle",
+    "remainder": "the residual of the best model",
+    "slow_noise": "slow noise, too large for a comparison with the simulation",
 }
-"""What is said alike of every channel."""
+"""Words that are the same for every channel."""
 LATE = (
-    "and so does the step of the gap, which no lag of the twist delays. A drag ahead of the teeth that grows "
-    "with the speed, as of stiff grease, would look like it"
+    "and so does the step of the gap; a lag of the twist does not delay this step. Drag ahead of the teeth "
+    "that grows with the speed, for example from stiff grease, would look the same"
 )
 LATE_ANGLE = {
     FILTER: "the angle reading follows the torque through a filter of {0:.2g} ± {1:.1g} s, " + LATE,
@@ -104,7 +104,7 @@ def words_of(structure: Structure, channel: str) -> str:
         case tuple():
             return "; ".join(sorted({_form(form, channel) for form in structure}))
         case Trace():
-            return f"a trace like {title_of(structure.cause)}"
+            return f"a small effect like {title_of(structure.cause)}"
         case Slip():
             return (
                 f"the output slips: each time torque passes {percent(LOADED_SHARE)} of its largest value and "
@@ -133,7 +133,7 @@ def words_of(structure: Structure, channel: str) -> str:
 
 def _form(form: UnnamedForm, channel: str) -> str:
     if form.kind == "one_specimen":
-        return f"specimen {form.number} by itself"
+        return f"specimen {form.number} alone"
     if form.kind in ("trend", "bend") and (form.kind, channel) not in FORMS:
         return f"a {form.kind} over {channel}"  # a dimension
     said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]

@@ -1,4 +1,4 @@
-"""What a reader should know where temperature has a part in what was found."""
+"""Notes on the role of temperature in the causes found."""
 
 from __future__ import annotations
 

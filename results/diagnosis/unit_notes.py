@@ -1,4 +1,4 @@
-"""What a reader should know of a sweep of several units: what they share, and how they differ."""
+"""Notes on a sweep of several units: common effects and differences."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _apart_notes(apart: UnitsApart) -> list[str]:
     """What each unit shows by itself, and which one the figures are of."""
     found = [
         "the units differ, so each was diagnosed by its own rows; figures, calibrated values, errors on "
-        f"held-out rows and the extended model are of {apart.unit}"
+        f"held-out rows and the extended model are those of {apart.unit}"
     ]
     return found + [f"{name} by itself: {_decided(own)}" for name, own in apart.decisions.items()]
 
@@ -73,5 +73,5 @@ def _size_notes(model: ExtendedModel) -> list[str]:
     softer = {u: 100 * compliance / model.compliance for u, (compliance, _) in model.own.items()}
     if max(softer.values()) - min(softer.values()) > UNITS_APART_PCT:
         each = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
-        found.append(f"compliance of each unit beside what they have in common: {each}")
+        found.append(f"difference of each unit's compliance from the common value: {each}")
     return found

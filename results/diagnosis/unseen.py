@@ -1,4 +1,4 @@
-"""What a record cannot show, whatever the gear does: one line each."""
+"""Effects that a record cannot show, whatever the gear does: one line each."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def unseen_notes(history: History, band_Nm: float, causes: Iterable[NamedCause] 
     elif history.time_s is not None and at_one_rate_on_ramps(history):
         told = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
         lag = (
-            "only the form of its loop tells friction from a lag"
+            "only the form of its loop distinguishes friction from a lag"
             if told
             else "a lag makes the same loop as friction"
         )

@@ -1,4 +1,4 @@
-"""Plain words for what a diagnosis found: one place, read by console, figures and report."""
+"""Words for the findings of a diagnosis, common to console, figures and report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The backlash budget: terms that add up to the total, and the sources of its doubt."""
+"""The backlash budget: terms that add up to the total, and the sources of its standard deviation."""
 
 from __future__ import annotations
 

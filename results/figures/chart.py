@@ -1,4 +1,4 @@
-"""What the file that draws a chart of a run says of it: what it shows, and its place in the report."""
+"""Declaration of a run's chart: its inputs, its caption, and its width in the report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the stiffnesses settle as their meshes get finer, against their bounds."""
+"""Convergence of the stiffnesses with finer meshes, compared with their bounds."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
             axes.set_xticks(range(-90, 91, 30))
             axes.grid(True, axis="y")
         axes.set_xlabel(
-            "Angle from the major axis in degrees. Rated torque; the other half turn is alike"
+            "Angle from the major axis in degrees. Rated torque; the other half turn is equal"
         )
         save_png(figure, path)
 
@@ -58,6 +58,6 @@ def _stations(angle_deg: np.ndarray) -> str:
 CHART = Chart(
     write=write_gear_loads,
     arguments=lambda run, extended: None if run.gear is None else (run.gear,),
-    caption=lambda content: "What tooth pairs and balls carry at rated torque, around one lobe.",
+    caption=lambda content: "Forces on tooth pairs and balls at rated torque, around one lobe.",
     width_pct=66,
 )

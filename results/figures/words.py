@@ -1,4 +1,4 @@
-"""Words that must fit into a place: broken over lines, shortened, made smaller."""
+"""Fits text into limited space: wrapped, shortened, or in a smaller font."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Parts in 3-D in a browser: what the report's page and the live page share, drawn by three.js."""
+"""3-D views of parts in a browser by three.js, common to the report's page and the live page."""

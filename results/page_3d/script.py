@@ -1,4 +1,4 @@
-"""ES modules as one script, for a page that opens from a folder and can import nothing from beside it.
+"""ES modules joined into one script, for a page that opens from a folder and cannot import files.
 
 Each module becomes a function that returns what it exports; the live page is served the same files as
 they are. So the report's policy allows its one script by its hash, and no address.

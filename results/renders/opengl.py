@@ -1,4 +1,4 @@
-"""Whether this machine has the OpenGL that VTK draws with: asked before VTK is, which crashes without."""
+"""Tests whether OpenGL is available before VTK is used, because VTK crashes without it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every picture of a part shares: eye, section faces, peak, colour range, magnification."""
+"""Common elements of part pictures: view, section faces, peak, colour range, magnification."""
 
 from __future__ import annotations
 

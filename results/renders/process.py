@@ -1,4 +1,4 @@
-"""Drawing in a process of its own: a graphics driver that crashes ends that process, not the program.
+"""Drawing in a separate process: if a graphics driver crashes, the program continues.
 
 The process is started for the first picture and draws more after it, so that VTK is loaded once; who draws
 much has two. What is to be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers

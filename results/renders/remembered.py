@@ -1,4 +1,4 @@
-"""The last answers of a function again, for a picture and its 3-D view are made of the same arrays."""
+"""Cache of a function's last results, because a picture and its 3-D view use the same arrays."""
 
 from __future__ import annotations
 

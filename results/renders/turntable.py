@@ -1,4 +1,4 @@
-"""A coloured surface that turns in a browser: scene, colour scale, mark and words as one JSON value."""
+"""A coloured surface that can be turned in a browser: scene, colour scale, mark and words as JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A picture as WebP, a fifth of its PNG: for pages, which carry their pictures."""
+"""A picture as WebP, a fifth of the size of its PNG, for HTML pages."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The PDF report: its content as data, and the typst template that sets it."""
+"""The reports: their content as data, and the templates for PDF and HTML."""

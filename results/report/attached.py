@@ -1,4 +1,4 @@
-"""Files that a report carries: what was read, byte for byte."""
+"""Input files attached to a report, byte for byte."""
 
 from __future__ import annotations
 

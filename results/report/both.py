@@ -1,4 +1,4 @@
-"""A document in both its forms."""
+"""A document as PDF and as HTML."""
 
 from __future__ import annotations
 

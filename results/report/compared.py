@@ -1,4 +1,4 @@
-"""What was measured, and with which simulation it was compared, in words."""
+"""The measurement, and the simulation with which it was compared, in words."""
 
 from __future__ import annotations
 

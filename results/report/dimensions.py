@@ -1,4 +1,4 @@
-"""All that a design file says: what one needs to build the same model again."""
+"""All values of a design file, so that the same model can be built again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who made a report, and when."""
+"""Program version and date of a report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the figures assume and where they end, in sentences that carry this design's numbers."""
+"""Assumptions and limits of the figures, in sentences with this design's numbers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LEAST_BEYOND_LIMIT = 5e-4
 """Probability from which play beyond the involute model's end is said: 0.05 %."""
 OF_A_HAT = (
     " A hat’s flange touches only the outer part of it, and K_e is then too large: by 9 and 19 % on two "
-    "shafts, against the same with their first 0.5 mm hollowed to the flange."
+    "shafts, compared with the same shafts with their first 0.5 mm hollowed to the flange."
 )
 
 
@@ -42,7 +42,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         ["Teeth", _teeth(content)],
         [
             "Where the torque enters",
-            "K_b depends on it, which is why every K_b here carries its load case. The sum uses "
+            "K_b depends on it, so every K_b here has its load case. The sum uses "
             f"“{case}”, {ENTERS[case]}.",
         ],
         ["Wave generator", _ellipse(content)],
@@ -51,8 +51,8 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Standard deviation",
             f"{sentence(spread_sentence(b))} "
             + (
-                "Only what the design file states under “uncertainty” enters, as independent and "
-                "normal; the error of the model itself does not."
+                "Only the values that the design file states under “uncertainty” are included, as "
+                "independent and normal; the error of the model itself is not."
                 if b.std_arcsec is not None
                 else "State it under “uncertainty”; without it the figures have no uncertainty."
             ),
@@ -147,8 +147,8 @@ def _linear(content: ReportContent, limit: LinearLimit) -> str:
     return (
         f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
         f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and "
-        "the bolts may end it earlier, and so may the wave generator's stress, which exists without torque; "
-        f"none of these is included.{_buckles(content, limit)}"
+        "the bolts may lower this limit, and so may the wave generator's stress, which exists without "
+        f"torque; none of these is included.{_buckles(content, limit)}"
     )
 
 
@@ -169,7 +169,7 @@ def _teeth(content: ReportContent) -> str:
         return (
             "Not drawn. The toothed ring is a plain ring of "
             f"{f.ring_thickness_mm:g} mm, the thickness under the tooth roots as "
-            "the design file gives it; where teeth stiffen the ring, that thickness must include it."
+            "the design file gives it; if teeth stiffen the ring, this thickness must include their effect."
         )
     bending, membrane, torsion = (
         quantity(f"equivalent_ring_thickness{leaf}_mm").with_unit(value)

@@ -1,4 +1,4 @@
-"""Letters that no font on this computer has: typst would print an empty box for each.
+"""Letters that no font on this computer has; typst would print an empty box for each.
 
 A PDF carries its fonts. Latin, Greek, Cyrillic, Arabic and Hebrew come with the libraries; Chinese, Japanese
 and many more only from fonts of the system.

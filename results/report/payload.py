@@ -1,4 +1,4 @@
-"""What both templates set of a report: JSON values, with numbers and references filled in.
+"""Data for both report templates: JSON values, with numbers and references filled in.
 
 Section, table and figure numbers are counted here, so that both print the same.
 """

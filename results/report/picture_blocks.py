@@ -1,4 +1,4 @@
-"""The charts of a section, and which of its pictures there are, or why one is not."""
+"""Charts and pictures of a section, or the reason why one is missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words of a report as spans: letters and how they are set, nothing that a template evaluates."""
+"""Text of a report as spans: letters and their style, without template code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each total of a report contains, so that none is taken for another."""
+"""Contents of each total in a report, so that totals are not confused."""
 
 from __future__ import annotations
 

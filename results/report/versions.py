@@ -1,4 +1,4 @@
-"""Names and versions of what computed and drew, for the report's last section."""
+"""Names and versions of the libraries used, for the report's last section."""
 
 from __future__ import annotations
 

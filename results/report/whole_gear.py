@@ -1,4 +1,4 @@
-"""The report's section on the whole gear: its curve, its shares, and the backlash sum beside it."""
+"""The report's section on the whole gear: its curve, its shares, and a comparison with the sum."""
 
 from __future__ import annotations
 
@@ -109,9 +109,10 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         ),
         rows=tuple(rows),
         caption="Backlash sum and whole gear compared. The whole gear’s flexspline wind-up includes "
-        "teeth and bearing; the angle of a clearance is what the free angle loses when first the flanks’ "
-        "clearance is taken away, then the bearing’s too. The gap without any clearance: balls, race "
-        "and rim deform elastically, so that the teeth do not reach full depth; the sum has no such term.",
+        "teeth and bearing. The angle of a clearance is the decrease of the free angle when the flanks’ "
+        "clearance is removed first, then the bearing’s. The gap without any clearance remains because "
+        "balls, race and rim deform elastically and the teeth do not reach full depth; the sum has no such "
+        "term.",
         strong=len(rows) - 1,
     )  # fmt: skip
 

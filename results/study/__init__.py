@@ -1,1 +1,1 @@
-"""What a person sees of a study: progress, tables, figures, a report."""
+"""Outputs of a study: progress, tables, figures, a report."""

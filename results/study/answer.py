@@ -1,4 +1,4 @@
-"""`flexspline study` step by step: evaluate, warn, and write tables, pictures and reports."""
+"""Steps of `flexspline study`: evaluate, warn, and write tables, pictures and reports."""
 
 from __future__ import annotations
 

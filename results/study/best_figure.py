@@ -1,4 +1,4 @@
-"""The best designs' flexsplines in section, over the design that the study began with.
+"""Sections of the best flexsplines, drawn over the first design.
 
 A wall is a hundredth of a section's length, so two places are drawn again, enlarged: the closed end's
 corner and the beginning of the toothed ring. Everything is in proportion.

@@ -1,4 +1,4 @@
-"""The best design on the wave generator: its stress as a picture, and as a view that turns."""
+"""The best design on the wave generator: its stress as a picture and as a 3-D view."""
 
 from __future__ import annotations
 

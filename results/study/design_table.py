@@ -1,4 +1,4 @@
-"""The report's table of designs: the best side by side, or without an objective the few that were built."""
+"""The report's table of designs: the best side by side, or some designs if there is no objective."""
 
 from __future__ import annotations
 

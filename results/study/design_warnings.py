@@ -1,4 +1,4 @@
-"""What `flexspline run` would warn of in a study's designs: the first, the best, and how many."""
+"""Warnings of `flexspline run` for a study's designs: the first, the best, and their number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why designs of a study could not be built or solved: by cause, how many, and one of them."""
+"""Designs of a study that could not be built or solved: number by cause, with one example."""
 
 from __future__ import annotations
 

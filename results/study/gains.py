@@ -1,4 +1,4 @@
-"""What tighter tolerances buy, as it is shown: no more of it than the sampling of the range tells."""
+"""Gains from tighter tolerances as printed; gains below the sampling error are printed as “< x”."""
 
 from __future__ import annotations
 

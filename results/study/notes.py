@@ -1,4 +1,4 @@
-"""What a study's report says about its own limits."""
+"""Notes in a study's report on its limits."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ PEAKS = tuple(f"{name}_mises_MPa" for name in (*PART_OF, ON_HALF_SEAT))
 def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
     """Sentences of the section "Scope and limits"; `of_designs`: warnings of the first and the best."""
     said = [
-        f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
-        f"is between bounds at most {100 * STUDY_TORSION_WIDTH:g} % apart, lobes "
+        f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; bounds "
+        f"of K are at most {100 * STUDY_TORSION_WIDTH:g} % apart, for lobes "
         f"{100 * STUDY_LOBE_WIDTH:g} %.",
         *_holes(result),
         _mass(result.study.design),
@@ -47,11 +47,7 @@ def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
     said += map(sentence, of_designs)
     if not result.verified:
         asked = result.study.file.run.verify
-        why = (
-            f"none that keeps to every constraint, of {asked} asked for"
-            if asked
-            else "run.verify = 0"
-        )
+        why = f"no design meets every constraint; {asked} requested" if asked else "run.verify = 0"
         said.append(f"No design was solved again with the solid model ({why}).")
     return said
 
@@ -89,10 +85,10 @@ def _advice(result: StudyResult, key: str) -> str:
             r.outcome.figures for r in result.built if limit.excess(r.outcome.figures[key]) <= 0
         ]
         if count := sum(at_border(key, figures) for figures in kept):
-            said = f"; of {len(kept)} designs that keep to this constraint {count} do so by such a figure"
+            said = f"; {len(kept)} designs meet this constraint, {count} of them by such a figure"
     better = f"{ON_HALF_SEAT}_mises_MPa"
     if key == f"{ON_ELLIPSE}_mises_MPa" and _used(result, key) and not _used(result, better):
-        said += f"; the figure to use is {better}, on a seat half as wide as the ring"
+        said += f"; use {better} instead, on a seat half as wide as the ring"
     return said
 
 
@@ -146,7 +142,7 @@ def preloaded(result: StudyResult) -> Iterable[str]:
         among = f"; among the best: {', '.join(best)}" if best else ""
         yield (
             f"in {count} of {len(forces)} designs teeth press on both flanks without torque ({PRELOAD} in "
-            f"study.csv; a constraint on it keeps them out){among}"
+            f"study.csv; a constraint on it excludes them){among}"
         )
 
 
@@ -161,7 +157,7 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
         "Whole gear: wave generator locked, no friction; T1 and T2 are "
         f"{T1_SHARE:g} and {T2_SHARE:g} of rated torque; an odd "
         "number of balls is computed as the next even one; run.verify does not solve it again."
-        + (f" Not stated, so in proportion: {keys}." if keys else "")
+        + (f" Not stated, therefore assumed in proportion: {keys}." if keys else "")
     )
     yield from map(sentence, preloaded(result))
 
@@ -183,14 +179,15 @@ def _holes(result: StudyResult) -> Iterable[str]:
     design = result.study.design
     if design.part("flexspline").bolts is not None:
         yield (
-            "K_b of every design with bolt holes lies between two parts of its own: one with the ring of the "
-            "holes cut out, one without holes, whatever their number. Stresses are those without holes."
+            "K_b of every design with bolt holes lies between two parts: one with the ring of the holes cut "
+            "out, one without holes. The number of holes does not matter. Stresses are computed without "
+            "holes."
         )
         yield from map(sentence, wide_bounds(result))
     if pierced(design):
         yield from _shaft_holes(result)
     if keys := unfollowed(result.study):
-        yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
+        yield f"{keys}: the fast model ignores these; the mass includes them, and run.verify solves them."
 
 
 def wide_bounds(result: StudyResult) -> Iterable[str]:
@@ -202,8 +199,8 @@ def wide_bounds(result: StudyResult) -> Iterable[str]:
     if count := sum(half > tolerance for half in halves):
         yield (
             f"in {count} of {len(halves)} designs bolt holes leave bounds of K_b wider than "
-            f"± {percent(tolerance)}, up to ± {percent(max(halves))}: K_b is their middle and may be off by "
-            "as much; run.verify solves the best designs with the solid model"
+            f"± {percent(tolerance)}, up to ± {percent(max(halves))}: K_b is the midpoint; its error may "
+            "be as large as the half-width; run.verify solves the best designs with the solid model"
         )
 
 
@@ -211,8 +208,8 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
     """How K_e was corrected, and what that does to its bounds; nothing where no design has it."""
     if result.no_holes_effect:
         yield (
-            "K_e is that of the shaft without its holes or keyway: the solid solve that would tell their "
-            f"effect failed ({result.no_holes_effect})."
+            "K_e is computed for the shaft without its holes or keyway: the solid solve for their effect "
+            f"failed ({result.no_holes_effect})."
         )
     key = "K_e_holes_factor"
     factors = [r.outcome.figures[key] for r in result.built if key in r.outcome.figures]
@@ -225,5 +222,5 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
         f"Holes and keyway change K_e by {' to '.join(ends)}: the same share of the flange's and the "
         "keyway's own compliance as in the design that the study began with (one solid solve). Bounds of "
         "K_e are widened "
-        f"by what both solves leave open{share}, and are estimates."
+        f"by the uncertainty of both solves{share}, and are estimates."
     )

@@ -1,4 +1,4 @@
-"""What a study asks, as its report repeats it: what is varied, what is sought, what is allowed."""
+"""The task of a study as its report repeats it: varied keys, objectives, constraints."""
 
 from __future__ import annotations
 

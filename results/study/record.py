@@ -1,4 +1,4 @@
-"""A study's result for machines and in a few lines for people."""
+"""A study's result as JSON, and in a few lines for the terminal."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     file = result.study.file
     lines = [
         f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved"
-        + (f", {len(result.feasible)} keep to every constraint" if file.constraint else "")
+        + (f", {len(result.feasible)} meet every constraint" if file.constraint else "")
     ]
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")

@@ -46,7 +46,7 @@ from flexspline.results.study.why import (
 METHODS = {
     "grid": "Every combination of the given values.",
     "sobol": "Designs spread evenly by a scrambled Sobol sequence.",
-    "optimize": "Designs chosen by an optimiser that learns from those before.",
+    "optimize": "Designs chosen by an optimiser that learns from the earlier designs.",
     "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
 }
 WIDTHS = {
@@ -56,12 +56,12 @@ WIDTHS = {
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design that was built, and the Pareto front.",
-    "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
-    "constraint allows.",
+    "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks the "
+    "range that a constraint allows.",
     "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
     "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
-    "best.png": "{sections} in section, over the design that the study began with.",
+    "best.png": "{sections} in section, drawn over the first design.",
     BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
@@ -130,7 +130,7 @@ def study_document(
 
 def _picture(name: str, result: StudyResult) -> Block:
     first = result.pareto[0].slot if name == BEST_STRESS else ""
-    so_far = ", and the best so far" if result.feasible else "; none keeps to every constraint"
+    so_far = ", and the best so far" if result.feasible else "; none meets every constraint"
     caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(
         first=first, best_so_far=so_far, sections=_sections(result)
     )
@@ -150,7 +150,7 @@ def _not_drawn(reason: str, result: StudyResult) -> Iterable[Block]:
 
 def _why(result: StudyResult) -> Iterable[Block]:
     if missed := tuple(misses(result)):
-        yield Heading("No design keeps to every constraint")
+        yield Heading("No design meets every constraint")
         yield Bullets(missed)
     if why := (*unbeaten_start(result), *influences(result), *limits(result)):
         yield Heading("Why they are best" if result.pareto else "Effects of the varied dimensions")
@@ -171,7 +171,7 @@ def _failures(result: StudyResult) -> Iterable[Block]:
 def _counts(result: StudyResult) -> str:
     said = f"{len(result.built)} of {len(result.rows)} designs were built and solved"
     if result.study.file.constraint:
-        said += f"; {len(result.feasible)} of them keep to every constraint"
+        said += f"; {len(result.feasible)} of them meet every constraint"
     if result.incomplete:
         said += f"; {incomplete(result)}"
     return said + "."
@@ -191,7 +191,7 @@ def _verified(result: StudyResult) -> Iterable[Block]:
                 "agree" if c.agrees else alarm("ALARM"),
             ))  # fmt: skip
     if lines:
-        yield Heading("The fast model against the solid one")
+        yield Heading("The fast model compared with the solid one")
         yield Table(
             (
                 Column("Design"), Column("Figure", grow=1), Column("Fast", "right"),

@@ -1,4 +1,4 @@
-"""The report's section on what scatters."""
+"""The report's section on the scatter of a tolerance study."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def scatter_section(s: Scatter) -> Iterable[Block]:
     )
     if s.tightened:
         least = least_gain(s)
-        hidden = f" Sampling hides gains of less than {least:.1f} {q.unit}." if least else ""
+        hidden = f" Gains below {least:.1f} {q.unit} are sampling error." if least else ""
         yield Paragraph(
             f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that "
             f"input alone scatters less.{hidden}"
@@ -67,7 +67,7 @@ def source_words(s: Scatter) -> str:
             "tolerance narrows the range."
         )
     enough = s.shares.enough
-    would = f"; about {enough} would do" if enough and enough <= MOST_EVALUATIONS else ""
+    would = f"; about {enough} would be enough" if enough and enough <= MOST_EVALUATIONS else ""
     return f"Too few evaluations for Sobol indices{tried}{would}."
 
 

@@ -83,7 +83,7 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
     )
     if design.flexspline.teeth != "none":
         out.append(
-            "flexspline.ring_thickness_mm is here the thickness of the plain ring that stands for the drawn "
+            "flexspline.ring_thickness_mm is here the thickness of the plain ring that replaces the drawn "
             f"teeth, not the file's {design.flexspline.ring_thickness_mm:g} mm"
         )
     out.append(f"{'clearance':42} {'µm':>8} {'in the sum, arcsec':>20} {'arcsec/µm':>11}")

@@ -1,4 +1,4 @@
-"""Figures over the one dimension that a study varies: a panel each, with what a constraint allows."""
+"""Figures over the one dimension that a study varies: one panel each, with the constraint's limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a tolerance study: distribution, Sobol indices, what tightening buys."""
+"""The picture of a tolerance study: distribution, Sobol indices, gain from tighter tolerances."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of the design that a study began with: a constraint broken, or nothing found better."""
+"""Remarks on the first design of a study: it breaks a constraint, or no design is better."""
 
 from __future__ import annotations
 

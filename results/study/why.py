@@ -1,4 +1,4 @@
-"""Why the best designs win, in sentences with numbers."""
+"""Reasons why the best designs are best, in sentences with numbers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def influences(result: StudyResult) -> list[str]:
 
 
 def misses(result: StudyResult) -> list[str]:
-    """Where no design keeps to every constraint: how many keep to each, and the nearest one."""
+    """If no design meets every constraint: how many meet each, and the nearest one."""
     row = result.nearest
     if row is None or result.feasible:
         return []
@@ -48,7 +48,7 @@ def misses(result: StudyResult) -> list[str]:
         kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
         asked = allowed(key, limit)
         said.append(
-            f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
+            f"{q.name}: {kept} of {len(result.built)} designs meet {asked}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
     at = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items())
@@ -69,14 +69,14 @@ def limits(result: StudyResult) -> list[str]:
         for key in binding(result, best):
             q = entry(key)
             said.append(
-                f"Design {best.slot} is held by the constraint on {q.name}: "
+                f"Design {best.slot} is limited by the constraint on {q.name}: "
                 f"{q.with_unit(best.outcome.figures[key])}, allowed are "
                 f"{allowed(key, result.study.file.constraint[key])}."
             )
         for key, value in unbuilt_neighbours(result, best):
             q = entry(key)
             said.append(
-                f"Beside design {best.slot}, the next {q.name} of the grid, {q.with_unit(value)}, could not "
+                f"Next to design {best.slot}, the next {q.name} of the grid, {q.with_unit(value)}, could not "
                 "be built or solved."
             )
     return said
@@ -94,8 +94,8 @@ def _open_ends(result: StudyResult) -> list[str]:
         q, many = entry(end.key), len(slots) > 1
         who = f"Designs {listed(slots, 'designs')} lie" if many else f"Design {slots[0]} lies"
         said.append(
-            f"{who} at the {end.end} end of the span in {q.name} ({q.with_unit(end.value)}): a wider span "
-            "may hold a better one."
+            f"{who} at the {end.end} end of the range of {q.name} ({q.with_unit(end.value)}): a wider "
+            "range may contain a better design."
         )
     return said
 
@@ -122,4 +122,4 @@ def incomplete(result: StudyResult) -> str:
     """How many designs lack a figure that neither objective nor constraint asks for."""
     count = len(result.incomplete)
     lack = "1 design lacks" if count == 1 else f"{count} designs lack"
-    return f"{lack} a figure that the study does not ask for (column reason)"
+    return f"{lack} a figure that the study does not need (column reason)"

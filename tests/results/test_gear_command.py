@@ -126,7 +126,7 @@ def test_a_gear_that_is_softer_at_larger_torque_says_so(curve: GearCurve) -> Non
 def test_the_gear_as_drawn_is_free_without_torque(curve: GearCurve) -> None:
     assert curve.preload_tooth_force_N == 0
     assert curve.warnings == ()
-    assert any("in place of 23" in line for line in gear_notes(curve))
+    assert any("instead of 23" in line for line in gear_notes(curve))
 
 
 def test_the_free_angle_does_not_hang_on_the_load() -> None:

@@ -39,14 +39,14 @@ WARNINGS: dict[GearWarning, str] = {
     ): "up to 230 N each: the plug's stroke of 0.13 mm is not m(z2 - z1)/2 = 0.2 mm",
     PressingFlanks(
         12.34, LowRim(0.05, 0.2)
-    ): "up to 12 N each: half the play, 0.05 mm, lowers the rim's stroke of 0.2 mm",
+    ): "up to 12 N each: half the play, 0.05 mm, reduces the rim's stroke of 0.2 mm",
     PressingFlanks(5.0, "flanks_cut"): "up to 5 N each: the flanks cut into each other",
     PressingFlanks(
         25.0, TightFlanks(54.2, 12.0)
     ): "front flanks press at 54°, back flanks at 12° from the major axis",
     CuttingFlanks(
         "plain", 52.6, 4.04, 55.0, None
-    ): "from 53° off the major axis on, by up to 4 µm at 55°: take the relieved shape or more clearance",
+    ): "from 53° off the major axis on, by up to 4 µm at 55°: use the relieved shape or more clearance",
     CuttingFlanks(
         "drawn", 30.0, 4.0, 55.0, 0.1
     ): "more clearance, or make the working depth less than 0.1 mm",
@@ -63,19 +63,19 @@ NOTES: dict[GearNote, str] = {
         "Here both flanks press without torque"
     ),
     FallingStiffness("K3", "K2", 0.3, 0.0): "K3 is 30 % below K2",
-    HalvedBalls(23, 24): "24 balls in place of 23",
+    HalvedBalls(23, 24): "24 balls instead of 23",
     LowRatio(45): "below a ratio of 45 the model is too stiff",
     RelievedFlanks(35.3, 14.6, 54.0): "beyond 35° from the major axis",
     ShapedFaces(16.4): "up to 16 µm at the ends",
-    StraightFlanks(20.0): "straight flanks of 20°, not of the drawn ones",
-    LoadedLastPair(54.0): "54° from the major axis, carries much",
+    StraightFlanks(20.0): "straight flanks of 20°, not for the drawn flanks",
+    LoadedLastPair(54.0): "54° from the major axis, carries a large force",
     TwoTorques(
         0.5, 0.8
     ): "at load.torque_Nm = 0.5, the lost motion at 0.8 N·m, 4 % of rated torque",
     JointClearances(
         24.1, 7.04
-    ): "is 24 arcsec smaller; the terms remove the flank clearance first, which "
-    "leaves 7 arcsec to the play",
+    ): "is 24 arcsec smaller; the terms remove the flank clearance first, so the term "
+    "of the play is 7 arcsec",
     BucklingTube(
         788.0, 832.0
     ): "at about 790 N·m (lower bound of tests), where its shear stress is 830 MPa",

@@ -32,7 +32,7 @@ class Wear(Cause):
     title = "wear (gap that grows from cycle to cycle)"
     unit = "arcsec/cycle"
     spread_share = 0.5
-    """A gap that wears grows by a good part of itself before somebody looks."""
+    """Wear typically increases the gap by about half before it is measured."""
     positive = True
     tunable = ("exponent", "run_in_cycles")
     shape_doubt = 0.007

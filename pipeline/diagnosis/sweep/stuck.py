@@ -1,4 +1,4 @@
-"""Whether what is left moves while torque moves and stays while it stands: an output that sticks anywhere."""
+"""Test for stick-slip by rests: the residual changes in motion and stays constant while torque rests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what is left is the same until torque has moved on, and another then: an output that sticks."""
+"""Test for stick-slip by travel: the residual changes with the torque travelled, not with time."""
 
 from __future__ import annotations
 

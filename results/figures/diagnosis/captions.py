@@ -1,17 +1,17 @@
-"""What each figure shows, and what to see in it."""
+"""Captions of the diagnosis figures."""
 
 from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 
 DRAWN_APART = """
-        Where a channel has few values the branches are drawn apart: rising torque left of its value, falling
-        torque right of it."""
+        If a channel has few values, the branches are drawn apart: rising torque to the left of its value,
+        falling torque to the right."""
 """Of every figure of residuals over channels: its points stand where no row was recorded."""
 CAPTIONS = {
     "measured_and_predicted": """
         Above, the measured angle on the simulated line; below, their difference. A difference inside
-        the band is what the design's own uncertainty allows; a pattern in it is not.""",
+        the band is within the design's stated uncertainty; a pattern in the difference is not.""",
     "residual_simulation": f"""
         Residual of the simulation, its stiffness and gap calibrated by up to two standard deviations of
         the design's uncertainty, against every recorded channel. With no cause missing, all points lie in
@@ -19,41 +19,39 @@ CAPTIONS = {
         lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes.
         {DRAWN_APART}""",
     "causes": """
-        Each part of the extended model alone. Pale: the measurement less all other parts. Dark: the
+        Each part of the extended model alone. Pale: the measurement minus all other parts. Dark: the
         model. The pale points should scatter evenly about the dark ones.""",
     "units": """
-        How much of each cause each unit shows, with two standard deviations: 1 is the mean of all
-        units or, where each was diagnosed by itself, the largest; 0 is nothing.""",
+        Share of each cause in each unit, with two standard deviations. 1 is the mean of all units or, if
+        each unit was diagnosed alone, the largest value; 0 is no effect.""",
     "held_out": """
-        Prediction error on rows not used in the fit. Where the last bar reaches the dashed line, the
-        extended model predicts as well as the instrument reads.""",
+        Prediction error on rows not used in the fit. If the last bar reaches the dashed line, the
+        extended model predicts as accurately as the instrument measures.""",
     "residual_model": f"""
         Residual of the best model: the points should fill the grey band evenly and the lines stay near
-        zero. A panel whose channel is tested says what the test finds. {DRAWN_APART}""",
+        zero. A panel with a tested channel shows the result of the test. {DRAWN_APART}""",
     "residual_unknown": f"""
         Residual of the best model, unnamed structure included. The structure that no cause
         explains lies in: {{where}}; the figure of the model's parts shows its course. {DRAWN_APART}""",
     "envelope": f"""
-        The angle between −T and +T of each unit. The band holds {COVERED_WORDS} units that are as the
-        design says; the design's clearances and stiffness do not explain a unit
-        beyond it.""",
+        The angle between −T and +T of each unit. The band contains {COVERED_WORDS} units that agree
+        with the design. The design's clearances and stiffness do not explain a unit beyond the band.""",
     "positions": """
-        Where the two ends of each unit lie. The symmetric simulation puts every middle on zero; the
-        zero of an angle reading is free, so a middle elsewhere proves nothing alone.""",
+        Positions of the two ends of each unit. In the symmetric simulation every mid position is zero. Each
+        unit's angle zero is unknown, so another mid position alone proves nothing.""",
     "rivals": """
-        Above, how the odds are shared among the explanations; bars of similar length cannot be
-        distinguished. Below, where shown, by how much a further measurement would separate
-        them.""",
+        Above, the odds of the explanations; explanations with bars of similar length cannot be
+        distinguished. Below, if shown, how well a further measurement would separate them.""",
     "stiffness": """
         Measured stiffness of each specimen as deviation from the simulation. With the cause found,
         the diamonds lie on the measured points.""",
     "dimensions": """
-        The same deviation against every dimension that varies. A slope says on what the fault
-        depends; a shift of all points alike is the material's, or a part that the simulation leaves
-        out.""",
+        The same deviation against every dimension that varies. A slope shows the dimension on which
+        the fault depends. An equal shift of all points comes from the material, or from a part that the
+        simulation leaves out.""",
     "held_out_specimens": """
-        Each specimen predicted from all others. Where the last bar reaches the dashed line, the
-        explanation predicts as well as the rig measures.""",
+        Each specimen predicted from all others. If the last bar reaches the dashed line, the
+        explanation predicts as accurately as the rig measures.""",
 }
 
 

@@ -1,4 +1,4 @@
-"""The parts of the extended model that a figure shows: each one's channel, view and words."""
+"""Parts of the extended model that a figure shows: channel, axes and words of each."""
 
 from __future__ import annotations
 

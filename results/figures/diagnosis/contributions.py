@@ -1,4 +1,4 @@
-"""What each cause adds to the angle, against the channel in which it shows best."""
+"""Contribution of each cause to the angle, over the channel in which it is clearest."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def write_contributions(path: Path, shown: SweepPictureData) -> None:
                 marker="o",
                 lw=0,
                 ms=4,
-                label="measured less all other parts, torque rising",
+                label="measured minus all other parts, torque rising",
             ),
             Line2D([], [], color=FALLING, marker="o", lw=0, ms=4, label="the same, torque falling"),
             Line2D([], [], color=INK, marker="o", lw=0, ms=3, label="model"),

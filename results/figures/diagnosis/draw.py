@@ -1,4 +1,4 @@
-"""Which figures a diagnosis has; one place that tells kinds of measurement apart."""
+"""Selects the figures of a diagnosis by its kind of measurement."""
 
 from __future__ import annotations
 

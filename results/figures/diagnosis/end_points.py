@@ -1,4 +1,4 @@
-"""End points: every unit against the predicted envelope, and where its ends lie."""
+"""End points: every unit compared with the predicted envelope, and the positions of its ends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Before and after, on rows that were not used for fitting."""
+"""Prediction errors before and after, on rows that were not used for fitting."""
 
 from __future__ import annotations
 

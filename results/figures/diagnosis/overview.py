@@ -1,4 +1,4 @@
-"""Measured against predicted: the torque-angle curve, and its difference from the simulation."""
+"""Measurement and prediction: the torque-angle curve, and its difference from the simulation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Residual against every channel, one panel each, loading and unloading told apart."""
+"""Residual over every channel, one panel each, with separate marks for loading and unloading."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""End points: what could explain them, and what would tell the explanations apart."""
+"""End points: possible explanations, and measurements that would distinguish them."""
 
 from __future__ import annotations
 

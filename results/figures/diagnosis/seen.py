@@ -1,4 +1,4 @@
-"""What the figures of a torque sweep show: residuals, branches and channels as plain arrays."""
+"""Data of the sweep figures: residuals, branches and channels as plain arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Specimens: measured stiffness against FE, by specimen and by every dimension that varies."""
+"""Specimens: measured stiffness compared with FE, by specimen and by every dimension that varies."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def write_dimensions(path: Path, found: SpecimenAnalysis, overrides: dict[str, n
     varying = {k: v for k, v in overrides.items() if np.ptp(v) > 0}
     measured, explained = _pct(found.measured, found), _pct(found.explained, found)
     with styled():
-        title = "Measured less simulated, against every dimension"
+        title = "Measured minus simulated, over every dimension"
         figure, panels = panel_sheet(len(varying), title, "over simulated, %")
         for axes, (key, values) in zip(panels, varying.items(), strict=True):
             _against(axes, values, measured, explained, 100 * found.noise, bool(found.chosen.terms))

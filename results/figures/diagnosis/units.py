@@ -1,4 +1,4 @@
-"""Several units in one file: how much of each cause each unit shows."""
+"""Several units in one file: the share of each cause in each unit."""
 
 from __future__ import annotations
 

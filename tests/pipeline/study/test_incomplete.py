@@ -47,7 +47,7 @@ def test_a_figure_that_nothing_asks_for_may_be_missing(tmp_path: Path) -> None:
     record = summary(result)
     assert (record["failed"], record["incomplete"]) == (0, len(result.rows))
     assert record["best"]
-    said = f"{len(result.rows)} designs lack a figure that the study does not ask for"
+    said = f"{len(result.rows)} designs lack a figure that the study does not need"
     assert said in words(result, record | {"files": []})
     assert table_of(result)["reason"] == [REASON] * len(result.rows)
 

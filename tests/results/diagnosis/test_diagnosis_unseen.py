@@ -48,7 +48,7 @@ def test_channels_that_were_not_recorded_are_named() -> None:
 @pytest.mark.parametrize(
     ("alternatives", "said"),
     [
-        ((), "only the form of its loop tells friction from a lag"),
+        ((), "only the form of its loop distinguishes friction from a lag"),
         (("rate_dependence",), "a lag makes"),
     ],
 )

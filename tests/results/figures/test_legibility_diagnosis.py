@@ -151,7 +151,7 @@ def test_points_that_are_moved_are_said_to_be(tmp_path: Path) -> None:
         "load cycle (branches apart)", "wave generator angle in ° (branches apart)"
     }  # fmt: skip
     for name in ("residual_simulation", "residual_model", "residual_unknown"):
-        assert "rising torque left of its value" in caption(name, where="torque")
+        assert "rising torque to the left of its value" in caption(name, where="torque")
 
 
 def test_the_legend_counts_each_kind_of_row_that_was_not_used(tmp_path: Path) -> None:

@@ -223,7 +223,7 @@ def test_a_section_goes_on_where_little_of_a_page_is_taken(tmp_path):
 def test_the_whole_gear_has_its_section(tmp_path):
     write_report(tmp_path / "r.pdf", content())
     text, _ = text_of(tmp_path / "r.pdf")
-    for words in ("The whole gear", "wave_generator.ball_count = 23 (usual)", "24 balls in place of 23",
+    for words in ("The whole gear", "wave_generator.ball_count = 23 (usual)", "24 balls instead of 23",
                   "Gap without any clearance", "47.4", "60 % flexspline"):  # fmt: skip
         assert words in text, words
 

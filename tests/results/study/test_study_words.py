@@ -83,7 +83,7 @@ def test_gains_of_tighter_tolerances_do_not_fall_in_print() -> None:
         ["10.3", "19.6", "19.6", "28.0"],  # 19.55 twice
     ]
     (said,) = [str(b) for b in scatter_section(scatter) if "last four columns" in str(b)]
-    assert "Sampling hides gains of less than 0.3 arcsec." in said
+    assert "Gains below 0.3 arcsec are sampling error." in said
     assert set(gains_drawn(scatter)) == set(gains_shown(scatter))
     assert [gains_drawn(scatter)[k] for k in gains_drawn(scatter)][:4] == [0.0] * 4
 
@@ -133,9 +133,9 @@ def test_bounds_that_bolt_holes_leave_wide_are_said() -> None:
 def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
     stress, total, nearest = misses(result_of())
     assert nearest == "Design 0: wall thickness 0.3\u202fmm."
-    assert "0 of 10 designs keep to at most 300" in stress
+    assert "0 of 10 designs meet at most 300" in stress
     assert "design 0, has 310" in stress
-    assert "6 of 10 designs keep to at most 90.0" in total  # 85, 86, …, 90
+    assert "6 of 10 designs meet at most 90.0" in total  # 85, 86, …, 90
 
 
 def test_where_something_is_allowed_nothing_is_missed() -> None:
@@ -169,7 +169,9 @@ def test_a_start_that_is_not_allowed_is_marked(stress: float, broken: bool) -> N
 
 
 def test_a_constraint_that_holds_is_said_with_its_limit() -> None:
-    (line,) = (t for t in limits(result_of(STUDY.replace("300.0", "310.0"))) if "is held by" in t)
+    (line,) = (
+        t for t in limits(result_of(STUDY.replace("300.0", "310.0"))) if "is limited by" in t
+    )
     assert "310" in line.partition("allowed are")[0]
     assert "at most 310" in line
 
@@ -180,7 +182,7 @@ def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
         STUDY.replace("300.0", "900.0").replace("90.0", "900.0").replace("max = 0.5", "max = 0.48")
     )
     (said,) = limits(result_of(text))
-    assert "upper end of the span in wall thickness" in said
+    assert "upper end of the range of wall thickness" in said
 
 
 @pytest.mark.parametrize("columns", ["", "60"])
@@ -243,7 +245,7 @@ def test_of_a_front_every_design_at_an_end_is_named() -> None:
         .replace('"maximize"', f'"maximize"\n"{STRESS}" = "minimize"')
     )
     result = result_of(text.replace("max = 0.5", "max = 0.48"))
-    said = [line for line in limits(result) if "end of the span in wall thickness" in line]
+    said = [line for line in limits(result) if "end of the range of wall thickness" in line]
     assert [line.split(" lies")[0] for line in said] == ["Design 9", "Design 0"]
 
 
@@ -259,7 +261,7 @@ def test_a_neighbour_in_the_grid_that_could_not_be_built_is_said() -> None:
     )
     third = Row(2, {WALL: 0.6}, Outcome(faults=("too thick",)))
     assert limits(replace(result, rows=(first, second, third))) == [
-        "Beside design 1, the next wall thickness of the grid, 0.6\u202fmm, could not be built or solved."
+        "Next to design 1, the next wall thickness of the grid, 0.6\u202fmm, could not be built or solved."
     ]
 
 
@@ -323,8 +325,8 @@ def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
 @pytest.mark.parametrize(
     ("most", "flagged_designs", "said"),
     [
-        ("330.0", 10, "of 3 designs that keep to this constraint 3 do so by such a figure"),
-        ("330.0", 1, "of 3 designs that keep to this constraint 1 do so by such a figure"),
+        ("330.0", 10, "3 designs meet this constraint, 3 of them by such a figure"),
+        ("330.0", 1, "3 designs meet this constraint, 1 of them by such a figure"),
         ("300.0", 10, ""),
     ],
 )
@@ -338,10 +340,10 @@ def test_a_constraint_that_marked_peaks_keep_names_the_figure_to_use(
     )
     result = replace(result, rows=rows)
     (line,) = border_warnings(result)
-    assert ("designs that keep to this constraint" in line) is bool(said)
+    assert ("designs meet this constraint" in line) is bool(said)
     assert said in line
-    assert f"the figure to use is {HALF_SEAT}" in line
-    assert f"the figure to use is {HALF_SEAT}" in " ".join(notes(result))
+    assert f"use {HALF_SEAT} instead" in line
+    assert f"use {HALF_SEAT} instead" in " ".join(notes(result))
 
 
 def test_a_study_that_asks_for_the_half_seat_figure_is_not_told_to() -> None:
@@ -355,7 +357,7 @@ def test_keys_of_holes_are_named_as_not_followed() -> None:
     key = "shaft.bolt_hole_diameter_mm"
     text = STUDY.replace("[objective]", f'"{key}" = {{ values = [2.5, 3.0] }}\n[objective]')
     assert unfollowed(result_of(text).study) == key
-    assert f"{key}: the fast model does not follow" in " ".join(notes(result_of(text)))
+    assert f"{key}: the fast model ignores" in " ".join(notes(result_of(text)))
 
 
 @pytest.mark.parametrize(
@@ -436,7 +438,7 @@ def test_there_is_no_best_so_far_where_nothing_is_allowed(most: str, allowed: bo
     (shown,) = (b for b in document.blocks if isinstance(b, Pictures))
     caption = str(shown.figures[0].caption)
     assert ("best so far" in caption) is allowed
-    assert ("none keeps to every constraint" in caption) is not allowed
+    assert ("none meets every constraint" in caption) is not allowed
 
 
 def test_with_drawn_teeth_the_ring_of_the_sensitivities_is_said_not_to_be_the_files() -> None:

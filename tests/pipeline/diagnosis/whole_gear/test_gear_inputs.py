@@ -135,9 +135,9 @@ def test_a_twist_of_another_kind_is_not_named(bent: Diagnosis) -> None:
     assert found is not None
     assert found.outcome == "unknown"
     (said,) = gear_inputs_notes(found)
-    assert "no one or two inputs" in said
+    assert "no single input and no pair of inputs" in said
     off = (found.fitted[0].chi_square / (found.places - 1)) ** 0.5  # of a chi square: 1 in the mean
-    assert f"lies {off:.2g} standard deviations off the readings" in said
+    assert f"deviates from the readings by {off:.2g} standard deviations" in said
     assert off > 1.5
 
 
