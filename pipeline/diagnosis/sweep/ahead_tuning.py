@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRIC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import behind
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, log_evidence
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_history
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, base_columns
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import ENOUGH_NATS
@@ -141,7 +141,7 @@ class _Trial:
         matrix = x.T @ x + np.diag(precision)
         right = x.T @ y
         mean = np.linalg.solve(matrix, right)
-        fit = float(right @ mean - y @ y) / 2 - float(np.linalg.slogdet(matrix)[1]) / 2
+        fit = log_evidence(matrix, right) - float(y @ y) / 2
         off, known = self._beside(point)
         return _State(x, precision, mean, y - x @ mean, fit - float(known @ off**2) / 2)
 

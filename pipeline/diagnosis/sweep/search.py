@@ -10,7 +10,11 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
+from flexspline.pipeline.diagnosis.sweep.evidence import (
+    GaussianEvidence,
+    column_indices,
+    log_evidence,
+)
 from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, RegressorPool
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
@@ -110,9 +114,7 @@ class Search:
         if len(at) == 0:
             return Candidate((), frozenset(), 0.0, 0.0)
         matrix = self.evidence.gram[np.ix_(at, at)] + np.eye(len(at))
-        right = self.evidence.right[at]
-        gain = right @ np.linalg.solve(matrix, right) / 2
-        nats = float(gain - np.linalg.slogdet(matrix)[1] / 2)
+        nats = log_evidence(matrix, self.evidence.right[at])
         owners = frozenset(self._owner[i] for i in terms)
         return Candidate(tuple(terms), owners, nats, nats + self.prior(terms))
 

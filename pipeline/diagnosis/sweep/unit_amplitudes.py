@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.sweep.evidence import log_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 OWN_NATS = 5.0
@@ -75,9 +77,5 @@ def _fit(
     precision = np.diag(np.concatenate([prior, np.full(k, SHARE_STD**-2)]))
     matrix, right = x.T @ x + precision, x.T @ y
     inverse = np.linalg.inv(matrix)
-    evidence = (
-        right @ inverse @ right / 2
-        - np.linalg.slogdet(matrix)[1] / 2
-        + k * np.log(SHARE_STD**-2) / 2
-    )
-    return ((inverse @ right)[-k:], inverse[-k:, -k:]), float(evidence)
+    evidence = log_evidence(matrix, right) - k * log(SHARE_STD)
+    return ((inverse @ right)[-k:], inverse[-k:, -k:]), evidence
