@@ -9,6 +9,7 @@ from scipy.special import chdtrc
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.best_of_looks import p_value_of_best
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -108,7 +109,7 @@ def _wave(prepared: PreparedSweep, left: np.ndarray) -> ChannelTest:
     count = max(8, len(left) // 2)
     power = _periodogram(t, (left - left.mean()) / left.std(), np.pi / length, 2 * count)
     top = float(power.max())
-    p_value = float(-np.expm1(count * np.log1p(-np.exp(-min(top, 700.0)))))
+    p_value = p_value_of_best(float(np.exp(-min(top, 700.0))), count, independent=True)
     share = 2 * top / len(left)
     return ChannelTest(
         "time_s", float(np.sqrt(min(share, 1.0))) * prepared.noise.std_arcsec, p_value
