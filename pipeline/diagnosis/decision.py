@@ -19,9 +19,10 @@ by `overruled`:
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,6 +50,34 @@ UNEXPLAINED_SHARE = 0.5
 
 Scored = tuple[Collection[str], float]
 """The causes of an explanation, and its log evidence with its log prior."""
+
+
+class Explanation(Protocol):
+    """What a race compares: `score` is log evidence and log prior, `penalised` that of `RIVAL_LIKELIHOOD`."""
+
+    @property
+    def causes(self) -> tuple[str, ...]: ...
+    @property
+    def score(self) -> float: ...
+    @property
+    def penalised(self) -> float: ...
+
+
+E = TypeVar("E", bound=Explanation)
+
+
+@dataclass(frozen=True)
+class HeldAgainst(Generic[E]):
+    """A cause of the best explanation, held against all explanations of a race.
+
+    `evidence_nats` : over the best without it. `alternatives` : causes that explain the data as well in its
+    place, each with the likeliest explanation that has it there.
+    """
+
+    cause: str
+    probability: float
+    evidence_nats: float
+    alternatives: Mapping[str, E]
 
 
 @dataclass(frozen=True)
@@ -81,6 +110,35 @@ def probability(cause: str, explanations: Iterable[Scored]) -> float:
     scored = list(explanations)
     having = np.array([cause in causes for causes, _ in scored])
     return min(1.0, float(weights([s for _, s in scored])[having].sum()))
+
+
+def held_against(
+    best: E, race: Sequence[E], null: float, may_replace: Callable[[E], bool]
+) -> list[HeldAgainst[E]]:
+    """Each cause of the best explanation, held against all of a race, the likeliest first.
+
+    `null` : score of the simulation by itself. `may_replace` : which explanations are of the same kind as
+    the best, so that one with another cause in a cause's place may be its rival.
+    """
+    scored = [(e.causes, e.score) for e in race]
+    near = [
+        e
+        for e in race
+        if may_replace(e) and is_rival(best.score - e.score, best.penalised - e.penalised)
+    ]
+    found = []
+    for cause in best.causes:
+        kept = set(best.causes) - {cause}
+        alternatives: dict[str, E] = {}
+        for e in near:
+            if cause not in e.causes and kept <= set(e.causes):
+                for other in e.causes:
+                    if other not in kept:
+                        alternatives.setdefault(other, e)
+        without = max((null, *(score for causes, score in scored if cause not in causes)))
+        gain = best.score - without
+        found.append(HeldAgainst(cause, probability(cause, scored), gain, alternatives))
+    return found
 
 
 def weights(scores: ArrayLike) -> np.ndarray:
