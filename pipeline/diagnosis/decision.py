@@ -2,8 +2,8 @@
 
 Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
 (block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
-decided here. All log quantities are in nats. Which input of a gear explains its curve is not decided here:
-`whole_gear/identification.py` compares chi squares of inputs that have no prior.
+decided here. All log quantities are in nats. Which input of a gear explains its curve is decided in
+`whole_gear/identification.py`, by chi squares of inputs that have no prior; its two limits are here.
 
 Of a sweep `sweep/diagnose.py` may overrule it in five places, in this order; all but the first say `unknown`,
 by `overruled`:
@@ -39,6 +39,13 @@ RIVAL_EVIDENCE = 4.0
 """Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
 RIVAL_LIKELIHOOD = 6.0
 """Nats of log likelihood less ½ log n for each amplitude (half of Schwarz's BIC), docs/contract.md."""
+RIVAL_CHI_SQUARE = 6.0
+"""Chi square by which another input of a gear may fit its curve worse and be a rival: 2·3 nats, odds of 20 to
+1. An input has no prior and is one amplitude, so its evidence is half the chi square. Below the limits of
+causes, by judgement: the inputs are five and bend the curve alike; with more rivals none would be told."""
+MISFIT_P_VALUE = 0.01
+"""Probability of a chi square as large, below which a gear's curve does not fit: the usual level of a test.
+By chance one right curve of a hundred is said to miss something."""
 EVEN_ODDS = 0.5
 """Probability at which a cause is as likely as not."""
 BESIDE_UNKNOWN = 2.0
