@@ -52,25 +52,24 @@ class Candidate:
         return frozenset(c.id for i in self.terms if (c := evidence.terms[i].cause))
 
 
-def any_term(term: Regressor) -> bool:
-    """Lets every term in."""
-    return True
-
-
 @dataclass
 class Search:
-    """A beam search over sets of terms of one race; remembers every set that it tried."""
+    """A beam search over sets of terms of one race; remembers every set that it tried.
+
+    `allowed` : which terms are let in; None: every one.
+    """
 
     evidence: GaussianEvidence
-    allowed: Callable[[Regressor], bool] = any_term
+    allowed: Callable[[Regressor], bool] | None = None
     best: dict[frozenset[str], Candidate] = field(default_factory=dict)
     """Best candidate of each set of owners."""
     tried: list[Candidate] = field(default_factory=list)
     """Every candidate."""
 
     def __post_init__(self) -> None:
-        allowed = [i for i, term in enumerate(self.evidence.terms) if self.allowed(term)]
-        self._joining = RegressorPool.of(self.evidence, allowed)
+        terms, allowed = self.evidence.terms, self.allowed
+        members = [i for i, term in enumerate(terms) if allowed is None or allowed(term)]
+        self._joining = RegressorPool.of(self.evidence, members)
         self._seen: set[frozenset[int]] = set()
         self._owner = [t.owner for t in self.evidence.terms]
 
