@@ -40,7 +40,8 @@ CONCAVE = {CLEARANCE, FRICTION, HARDENING}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the
 first one's shape. A pair has at most one of them."""
 FREE_SPREAD_RATIO = 100.0
-"""So many times wider a prior leaves an amplitude to the likelihood."""
+"""So many times wider a prior leaves an amplitude to the likelihood: it weighs a 10 000th of what it did. 30
+or 300 change nothing of 84 made-up sets (`evidence.CORRELATIONS`)."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from flexspline.pipeline.diagnosis.sweep.evidence import log_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 OWN_NATS = 5.0
-"""Evidence that separate amplitudes must gain over a common one."""
+"""Nats that separate amplitudes must gain over a common one: odds of 150 to 1, by judgement, as each cause of
+each record is asked and one that differs has the units judged apart."""
 SHARE_STD = 2.0
 """Prior standard deviation of a unit's amplitude, over the common one: a ratio of 0 or 3 is likely."""
 SHOWS, SHOWS_NOT = 4.0, 2.0
