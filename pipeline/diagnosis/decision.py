@@ -59,8 +59,11 @@ Scored = tuple[Collection[str], float]
 """The causes of an explanation, and its log evidence with its log prior."""
 
 
-class Explanation(Protocol):
-    """What a race compares: `score` is log evidence and log prior, `penalised` that of `RIVAL_LIKELIHOOD`."""
+class RacedSet(Protocol):
+    """A set of causes in a race.
+
+    `score` : log evidence and log prior. `penalised` : log likelihood as `RIVAL_LIKELIHOOD` has it.
+    """
 
     @property
     def causes(self) -> tuple[str, ...]: ...
@@ -70,7 +73,7 @@ class Explanation(Protocol):
     def penalised(self) -> float: ...
 
 
-E = TypeVar("E", bound=Explanation)
+E = TypeVar("E", bound=RacedSet)
 
 
 @dataclass(frozen=True)
