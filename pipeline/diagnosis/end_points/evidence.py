@@ -26,8 +26,7 @@ READINGS = 5
 """Points of the grid of σ: 3, 9 or 17 change neither verdict nor cause of those sets."""
 LARGEST_READING = 0.05
 """σ goes from the file's resolution to this share of the median total, in even steps of log σ. By judgement:
-no rig reads worse. 0.02 changes nothing of those sets; 0.15, which lets effects pass for readings, changes
-one verdict."""
+no rig reads worse. 0.02 changes nothing of those sets; 0.15 changes one verdict."""
 
 
 @dataclass(frozen=True)

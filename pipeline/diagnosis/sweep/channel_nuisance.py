@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 TIME_STEPS = 25
 """Places of a step in time, evenly over a unit's rows: the nearest is within 2 % of them, and a sudden one is
 tried at its own row (`sudden_step.py`). Half or twice as many change no verdict of 12 made-up records
-(`tests/hidden`, seed 77, every third of 34)."""
+(`tests/hidden`, seed 77, every third of 34; nothing held out)."""
 MOST_AMBIGUOUS_POSITIONS = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 WAVES = range(3, 61)

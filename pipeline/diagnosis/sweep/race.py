@@ -42,7 +42,7 @@ from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, 
 
 TUNINGS, TUNED_KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause alone that are tuned. Either doubled, no verdict of 12
-made-up records changes (`tests/hidden`, seed 77, every third of 34)."""
+made-up records changes (`tests/hidden`, seed 77, every third of 34; nothing held out)."""
 TUNED_LAWS = 2
 """Sets of the same causes by other laws that are tuned beside the best one: for the doubt of sizes, not for
 verdicts, of which 0, 1 or 4 change none of those 12."""

@@ -27,11 +27,11 @@ STEADY_SIGMAS = 3.0
 """Deviations of the torque's noise within which bins of torque do not follow the reading."""
 STRUCTURE_P_VALUE = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested, so that noise alone has one
-said in a record of 1200. 1e-3 changes no verdict of those 12 records."""
+said in a record of 1200. 1e-3 changes no verdict of those 12 records, nothing held out."""
 UNKNOWN_P_VALUE = 1e-8
 """p-value of a channel's structure that, with nothing named, makes the verdict `unknown`. The square of the
 other, by judgement: it takes the noise for known, which is estimated. 1e-6 or 1e-10 change no verdict of
-those 12."""
+those 12 either."""
 
 
 @dataclass(frozen=True)
