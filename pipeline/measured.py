@@ -58,7 +58,11 @@ def diagnose(
     >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
     True
     """
-    from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
+    from flexspline.pipeline.diagnosis.with_stiffness import (
+        DiagnosisOptions,
+        GivenStiffness,
+        diagnose_with_stiffness,
+    )
 
     @cache
     def context() -> AnalysisContext:
@@ -72,10 +76,8 @@ def diagnose(
     found, _ = diagnose_with_stiffness(
         design,
         file_name(path, "measured data"),
-        (K_b, K_e),
-        ("K_b = ", "K_e = "),
+        GivenStiffness((K_b, K_e), ("K_b = ", "K_e = ")),
         context,
-        counts_per_turn,
-        gear=against == "gear",
+        DiagnosisOptions(counts_per_turn, gear=against == "gear"),
     )
     return found

@@ -2,8 +2,8 @@
 
 Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
 (block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
-decided here. All log quantities are in nats. Which input of a gear explains its curve is not decided here:
-`whole_gear/identification.py` compares chi squares of inputs that have no prior.
+decided here. All log quantities are in nats. Which input of a gear explains its curve is decided in
+`whole_gear/identification.py`, by chi squares of inputs that have no prior; its two limits are here.
 
 Of a sweep `sweep/diagnose.py` may overrule it in five places, in this order; all but the first say `unknown`,
 by `overruled`:
@@ -19,9 +19,10 @@ by `overruled`:
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +39,13 @@ RIVAL_EVIDENCE = 4.0
 """Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
 RIVAL_LIKELIHOOD = 6.0
 """Nats of log likelihood less ½ log n for each amplitude (half of Schwarz's BIC), docs/contract.md."""
+RIVAL_CHI_SQUARE = 6.0
+"""Chi square by which another input of a gear may fit its curve worse and be a rival: 2·3 nats, odds of 20 to
+1. An input has no prior and is one amplitude, so its evidence is half the chi square. Below the limits of
+causes, by judgement: the inputs are five and bend the curve alike; with more rivals none would be told."""
+MISFIT_P_VALUE = 0.01
+"""Probability of a chi square as large, below which a gear's curve does not fit: the usual level of a test.
+By chance one right curve of a hundred is said to miss something."""
 EVEN_ODDS = 0.5
 """Probability at which a cause is as likely as not."""
 BESIDE_UNKNOWN = 2.0
@@ -49,6 +57,37 @@ UNEXPLAINED_SHARE = 0.5
 
 Scored = tuple[Collection[str], float]
 """The causes of an explanation, and its log evidence with its log prior."""
+
+
+class RacedSet(Protocol):
+    """A set of causes in a race.
+
+    `score` : log evidence and log prior. `penalised` : log likelihood as `RIVAL_LIKELIHOOD` has it.
+    """
+
+    @property
+    def causes(self) -> tuple[str, ...]: ...
+    @property
+    def score(self) -> float: ...
+    @property
+    def penalised(self) -> float: ...
+
+
+E = TypeVar("E", bound=RacedSet)
+
+
+@dataclass(frozen=True)
+class HeldAgainst(Generic[E]):
+    """A cause of the best explanation, held against all explanations of a race.
+
+    `evidence_nats` : over the best without it. `alternatives` : causes that explain the data as well in its
+    place, each with the likeliest explanation that has it there.
+    """
+
+    cause: str
+    probability: float
+    evidence_nats: float
+    alternatives: Mapping[str, E]
 
 
 @dataclass(frozen=True)
@@ -81,6 +120,35 @@ def probability(cause: str, explanations: Iterable[Scored]) -> float:
     scored = list(explanations)
     having = np.array([cause in causes for causes, _ in scored])
     return min(1.0, float(weights([s for _, s in scored])[having].sum()))
+
+
+def held_against(
+    best: E, race: Sequence[E], null: float, may_replace: Callable[[E], bool]
+) -> list[HeldAgainst[E]]:
+    """Each cause of the best explanation, held against all of a race, the likeliest first.
+
+    `null` : score of the simulation by itself. `may_replace` : which explanations are of the same kind as
+    the best, so that one with another cause in a cause's place may be its rival.
+    """
+    scored = [(e.causes, e.score) for e in race]
+    near = [
+        e
+        for e in race
+        if may_replace(e) and is_rival(best.score - e.score, best.penalised - e.penalised)
+    ]
+    found = []
+    for cause in best.causes:
+        kept = set(best.causes) - {cause}
+        alternatives: dict[str, E] = {}
+        for e in near:
+            if cause not in e.causes and kept <= set(e.causes):
+                for other in e.causes:
+                    if other not in kept:
+                        alternatives.setdefault(other, e)
+        without = max((null, *(score for causes, score in scored if cause not in causes)))
+        gain = best.score - without
+        found.append(HeldAgainst(cause, probability(cause, scored), gain, alternatives))
+    return found
 
 
 def weights(scores: ArrayLike) -> np.ndarray:

@@ -38,6 +38,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 from flexspline.pipeline.diagnosis.timeless import in_rows
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
@@ -108,20 +109,17 @@ class Diagnosis:
 def diagnose_measurement(
     design: Design,
     measurement: Measurement,
-    K_b: float,
-    K_e: float,
-    K_error: float = 0.0,
+    pair: StiffnessPair,
     context: AnalysisContext | None = None,
     chain: Chain | None = None,
     given: tuple[str, ...] = (),
 ) -> Diagnosis:
     """Diagnose a measurement.
 
-    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
-    they came from FE: specimens are then solved like the design; without it, given stiffnesses are
-    scaled from specimen to specimen by the hole-free model. A torque sweep is compared with the curve of
-    the whole gear's `chain`, where there is one, in place of the straight line. `given`: the stiffnesses
-    that a person stated, such as `--Kb 31.3`.
+    `context`, where the pair of stiffnesses came from FE: specimens are then solved like the design; without
+    it, given stiffnesses are scaled from specimen to specimen by the hole-free model. A torque sweep is
+    compared with the curve of the whole gear's `chain`, where there is one, in place of the straight line.
+    `given`: the stiffnesses that a person stated, such as `--Kb 31.3`.
 
     Raises
     ------
@@ -129,7 +127,8 @@ def diagnose_measurement(
     EquilibriumError : the gear has no equilibrium at the sweep's largest torque.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    prediction = prediction_of(design, K_b, K_e, K_error)
+    K_b, K_e = pair.K_b_Nm_per_rad, pair.K_e_Nm_per_rad
+    prediction = prediction_of(design, K_b, K_e, pair.error)
     if chain is not None:
         prediction = _along_gear_curve(prediction, chain, measurement)
     refuse_absurd(measurement, prediction, K_b, K_e, given)

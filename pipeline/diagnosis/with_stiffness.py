@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,24 +17,54 @@ if TYPE_CHECKING:
     from flexspline.pipeline.parts import AnalysisContext
 
 
+@dataclass(frozen=True)
+class GivenStiffness:
+    """K_b and K_e [N·m/rad] as a person states them; None: by FE.
+
+    `names` : what a message puts before each, such as "--Kb ".
+    """
+
+    pair: tuple[float | None, float | None]
+    names: tuple[str, str]
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """Those that are given, in words such as "--Kb 31.3"."""
+        both = zip(self.names, self.pair, strict=True)
+        return tuple(f"{name}{K:g}" for name, K in both if K is not None)
+
+
+@dataclass(frozen=True)
+class DiagnosisOptions:
+    """How a file is read, and what it is compared with.
+
+    Attributes
+    ----------
+    counts_per_turn : of the encoder, where a column is in counts.
+    gear : compare with the curve of the whole gear, not with the straight line of the backlash sum.
+    """
+
+    counts_per_turn: float | None = None
+    gear: bool = False
+
+
+PLAIN = DiagnosisOptions()
+"""As most files need: their angle is in a unit, and a sum's straight line is what they are held against."""
+
+
 def diagnose_with_stiffness(
     design: Design,
     csv: Path,
-    given: tuple[float | None, float | None],
-    names: tuple[str, str],
+    given: GivenStiffness,
     context: Callable[[], AnalysisContext],
-    counts_per_turn: float | None = None,
-    gear: bool = False,
+    options: DiagnosisOptions = PLAIN,
     progress: Progress | None = None,
 ) -> tuple[Diagnosis, StiffnessPair]:
     """The diagnosis, and the stiffnesses that it used.
 
     Parameters
     ----------
-    given : K_b and K_e [N·m/rad]; None: by FE. names : what a message puts before each, such as "--Kb ".
     context : asked for where something is solved, as that loads the solvers.
-    counts_per_turn : of the encoder, where a column is in counts.
-    gear : compare with the curve of the whole gear, not with the straight line of the backlash sum.
     progress : is told the stages.
 
     Raises
@@ -43,22 +74,23 @@ def diagnose_with_stiffness(
     MeasurementError : the file cannot be accepted.
     ComputationError : a stiffness that is needed was not found, or the gear has no equilibrium.
     """
-    if gear:
+    if options.gear:
         from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 
-        refuse_given(*given)
-    pair = given_pair(*given)
-    measurement = read_measurement(csv, counts_per_turn)  # refused before the long work, if bad
-    stated = tuple(f"{name}{K:g}" for name, K in zip(names, given, strict=True) if K is not None)
-    used = pair or stiffness_pair(context(), *given)
+        refuse_given(*given.pair)
+    pair = given_pair(*given.pair)
+    measurement = read_measurement(
+        csv, options.counts_per_turn
+    )  # refused before the long work, if bad
+    stated = given.stated
+    used = pair or stiffness_pair(context(), *given.pair)
     chain = None
-    if gear:
+    if options.gear:
         from flexspline.pipeline.gear_chain import chain_of
 
         chain = chain_of(context())
     with (progress or Progress()).stage("diagnosis"):
         found = diagnose_measurement(
-            design, measurement, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            None if stated else context(), chain, stated,
-        )  # fmt: skip
+            design, measurement, used, None if stated else context(), chain, stated
+        )
     return found, used

@@ -118,5 +118,5 @@ def predict(
         from flexspline.results.output_folder import folder_of
 
         gear, folder = load_design(design), folder_of(design, out, (PREDICTION,))
-        said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)
+        said = predict_and_write(gear, model, torque, folder, json, counts_per_turn)
         show(said, json)

@@ -6,7 +6,11 @@ from pathlib import Path
 
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
+from flexspline.pipeline.diagnosis.with_stiffness import (
+    DiagnosisOptions,
+    GivenStiffness,
+    diagnose_with_stiffness,
+)
 from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.files import write_diagnosis
 from flexspline.results.diagnosis.record import diagnosis_record
@@ -45,11 +49,9 @@ def diagnose_and_write(
     found, used = diagnose_with_stiffness(
         job.design,
         measured,
-        given,
-        ("--Kb ", "--Ke "),
+        GivenStiffness(given, ("--Kb ", "--Ke ")),
         lambda: job.context,
-        counts_per_turn,
-        gear,
+        DiagnosisOptions(counts_per_turn, gear),
         job.progress,
     )
     record = diagnosis_record(found)

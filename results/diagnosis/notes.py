@@ -195,12 +195,12 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
             0,
             f"the file has no column part: taken as {part}, by {GUESSED_BY[analysis.part_guessed_by]}",
         )
-    if YOUNGS_MODULUS not in chosen.named:
+    if YOUNGS_MODULUS not in chosen.causes:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
         found.append(f"Young's modulus calibrated by {change} % within its uncertainty")
     for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
         s = term.sensitivity
-        if s is not None and term.owner not in chosen.named:
+        if s is not None and term.owner not in chosen.causes:
             change = f"{value:+.2g}".replace("-", "−")
             found.append(
                 f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm of "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.model_notes import model_warnings
 from flexspline.results.diagnosis.prediction_words import prediction_warnings
 from flexspline.results.file_names import PREDICTION
+from flexspline.results.job import tell
 from flexspline.results.records import as_json
 
 COLUMN, STD_COLUMN = "angle_predicted_arcsec", "angle_std_arcsec"
@@ -29,7 +30,6 @@ def predict_and_write(
     torque: Path,
     folder: Path,
     json: bool,
-    tell: Callable[[str], None],
     counts_per_turn: float | None = None,
 ) -> str:
     """Predict, write prediction.csv, and return what is printed.

@@ -7,6 +7,7 @@ holds the whole root where its radius is the root's and the distance of the two 
 from __future__ import annotations
 
 import re
+from math import pi
 
 import pytest
 from shaft_of import shaft_of
@@ -60,7 +61,11 @@ def test_the_limit_is_where_the_hole_holds_the_root(
     circle: str, fillet: float, stands: bool
 ) -> None:
     if stands:
-        pierced(circle, "12.0", fillet)
+        solid = build_solid(pierced(circle, "12.0", fillet).part("shaft"))
+        # by hand: the pierced flange, the segment, and the fillet's ring by Pappus, 0.223 of its radius off
+        ring = (1 - pi / 4) * fillet**2 * 2 * pi * (9 / 2 + 0.223 * fillet)
+        whole = pi / 4 * (4 * (20**2 - 12**2) + 24 * 9**2) + ring
+        assert solid.Volume() == pytest.approx(whole, abs=0.01)
     else:
         with pytest.raises(DesignError, match="cut off"):
             pierced(circle, "12.0", fillet)
@@ -68,4 +73,6 @@ def test_the_limit_is_where_the_hole_holds_the_root(
 
 @pytest.mark.parametrize("second", [20.0, 24.0])
 def test_a_segment_as_wide_as_the_flange_stands_on_its_rim(second: float) -> None:
-    pierced("0.5", "19.0", second=second)
+    solid = build_solid(pierced("0.5", "19.0", second=second).part("shaft"))
+    # by hand: a thin ring is left of the flange
+    assert solid.Volume() == pytest.approx(pi / 4 * (4 * (20**2 - 19**2) + 24 * second**2))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_measurement
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 
 if TYPE_CHECKING:
     from flexspline.pipeline.gear_chain import Chain
@@ -23,4 +24,6 @@ def diagnose_file(
 ) -> Diagnosis:
     """Stiffnesses in N·m/rad; otherwise as `diagnose_measurement`."""
     measurement = read_measurement(csv)
-    return diagnose_measurement(design, measurement, K_b, K_e, chain=chain, given=given)
+    return diagnose_measurement(
+        design, measurement, StiffnessPair(K_b, K_e), chain=chain, given=given
+    )

@@ -24,13 +24,14 @@ def diagnose(case: Case) -> dict:
     """
     from flexspline.pipeline.diagnosis.diagnose import diagnose_measurement
     from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+    from flexspline.pipeline.stiffness_pair import StiffnessPair
     from flexspline.results.diagnosis.record import diagnosis_record
 
     with tempfile.TemporaryDirectory() as folder:
         csv = Path(folder) / "measured.csv"
         csv.write_text(case.csv, encoding="utf-8")
         design, measurement = design_from(tomllib.loads(case.design)), read_measurement(csv)
-        found = diagnose_measurement(design, measurement, case.K_b, case.K_e)
+        found = diagnose_measurement(design, measurement, StiffnessPair(case.K_b, case.K_e))
         record = diagnosis_record(found)
         if found.verdict == "named" and case.again:
             csv.write_text(case.again, encoding="utf-8")

@@ -14,12 +14,11 @@ from flexspline.pipeline.diagnosis.decision import (
     Decision,
     chance,
     decided,
-    is_rival,
+    held_against,
     is_significant,
-    probability,
 )
 from flexspline.pipeline.diagnosis.end_points.evidence import UnitEvidence
-from flexspline.pipeline.diagnosis.end_points.race import UNNAMED, Hypothesis
+from flexspline.pipeline.diagnosis.end_points.race import SIMULATION_SCORE, UNNAMED, Hypothesis
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import rms
@@ -37,28 +36,32 @@ def decide(
     if UNNAMED in best.causes and best.score > OVER_SIMULATION_NATS:
         left = _unnamed(best, hypotheses)
         return decided((), (left,), named_rms=0.0, unnamed_rms=left.rms)
-    named = [h for h in hypotheses if h.causes and UNNAMED not in h.causes]
-    best = named[0]
-    scored = [(h.causes, h.score) for h in hypotheses]
-    found = []
-    for i, cause in enumerate(best.causes):
-        kept = set(best.causes) - {cause}
-        rivals = [
-            h for h in named
-            if cause not in h.causes and kept <= set(h.causes) and len(h.causes) <= len(best.causes)
+    best = next(h for h in hypotheses if h.causes and UNNAMED not in h.causes)
+
+    def may_replace(h: Hypothesis) -> bool:
+        return (
+            UNNAMED not in h.causes
+            and len(h.causes) <= len(best.causes)
             and _channels(h) == _channels(best)
-            and is_rival(best.score - h.score, best.penalised - h.penalised)
-        ]  # fmt: skip
-        alternatives = dict.fromkeys(c for h in rivals for c in h.causes if c not in best.causes)
-        without = max(h.score for h in hypotheses if cause not in h.causes)
+        )
+
+    found = []
+    for i, held in enumerate(held_against(best, hypotheses, SIMULATION_SCORE, may_replace)):
         magnitude, std = _magnitude(best.best, i, rig, prediction)
         term = best.best.terms[i]
-        found.append(NamedCause(
-            cause, probability(cause, scored), tuple(alternatives), magnitude, std,
-            known_causes()[cause].unit, best.score - without,
-            rms((term.column * best.best.mean[i])[term.column != 0]),
-            () if best.own is None else (names[best.own],),
-        ))  # fmt: skip
+        found.append(
+            NamedCause(
+                held.cause,
+                probability=held.probability,
+                alternatives=tuple(held.alternatives),
+                magnitude=magnitude,
+                magnitude_std=std,
+                unit=known_causes()[held.cause].unit,
+                evidence_nats=held.evidence_nats,
+                rms_arcsec=rms((term.column * best.best.mean[i])[term.column != 0]),
+                own_units=() if best.own is None else (names[best.own],),
+            )
+        )
     sure = best.score > OVER_SIMULATION_NATS and all(map(is_significant, found))
     return decided(
         found, (), named_rms=hypot(*(c.rms_arcsec for c in found)), unnamed_rms=0.0, sure=sure

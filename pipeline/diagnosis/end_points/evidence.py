@@ -19,11 +19,14 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.end_points.regressors import EndPointRegressor
 
 CORRELATIONS = (0.1, 0.5, 0.9)
-"""ρ; even odds."""
+"""ρ; even odds, as nobody states it. Seven values from 0.05 to 0.95 change no verdict of 84 made-up sets
+(`units` of the tests of end points; two or three torques; a gap, a compliance, an asymmetry or nothing), and
+the rivals of two."""
 READINGS = 5
-"""Points of the grid of σ."""
+"""Points of the grid of σ: 3, 9 or 17 change neither verdict nor cause of those sets."""
 LARGEST_READING = 0.05
-"""σ goes from the file's resolution to this share of the median total, in even steps of log σ."""
+"""σ goes from the file's resolution to this share of the median total, in even steps of log σ. By judgement:
+no rig reads worse. 0.02 changes nothing of those sets; 0.15 changes one verdict."""
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,11 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import (
     CONSISTENT,
     Decision,
+    HeldAgainst,
     chance,
     decided,
-    is_rival,
+    held_against,
     is_significant,
-    probability,
     weights,
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
@@ -54,31 +54,27 @@ class SpecimenExplanation:
 
 def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
     """The verdict; `torque_Nm` turns compliance into the angle that a cause is worth."""
-    best = next((f for f in race.fits if f.named or f.unnamed), None)
+    best = next((f for f in race.fits if f.causes or f.unnamed), None)
     if best is None or best.score - race.null < OVER_NULL_NATS:
-        within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
+        within = [f for f in race.fits if not f.causes and not f.unnamed and len(f.terms) < 2]
         return SpecimenExplanation(CONSISTENT, within[0] if within else race.null_fit)
     best = _reduced(race, best)
     unexplained = [_unexplained(race, best, t) for t in best.unnamed]
-    found = []
-    rivals: list[LaplaceFit] = []
-    for cause in best.named:
-        near = [
-            f for f in race.fits
-            if _stands_for(f, best, cause)
-            and is_rival(best.score - f.score, best.penalised - f.penalised)
-        ]  # fmt: skip
-        alternatives = tuple(dict.fromkeys(c for f in near for c in f.named if c not in best.named))
-        rivals += [next(f for f in near if a in f.named) for a in alternatives]
-        found.append(_named(race, best, cause, alternatives, torque_Nm))
+
+    def may_replace(f: LaplaceFit) -> bool:
+        return f.allowed and not f.unnamed and len(f.terms) <= len(best.terms)
+
+    every = held_against(best, race.fits, race.null, may_replace)
+    found = [_named(race, best, held, torque_Nm) for held in every]
     decision = decided(
         found,
         unexplained,
-        named_rms=hypot(*(100 * _relative_rms(race, best, (c,)) for c in best.named)),
+        named_rms=hypot(*(100 * _relative_rms(race, best, (c,)) for c in best.causes)),
         unnamed_rms=hypot(*(u.rms for u in unexplained)),
         sure=all(map(is_significant, found)),
     )
-    return SpecimenExplanation(decision, best, tuple(rivals))
+    rivals = tuple(f for held in every for f in held.alternatives.values())
+    return SpecimenExplanation(decision, best, rivals)
 
 
 def _reduced(race: SpecimenRace, best: LaplaceFit) -> LaplaceFit:
@@ -86,42 +82,34 @@ def _reduced(race: SpecimenRace, best: LaplaceFit) -> LaplaceFit:
     if len(best.terms) < 2:
         return best
     for f in race.fits:
-        part = len(f.terms) == 1 and f.terms[0] in best.terms and (f.named or f.unnamed)
+        part = len(f.terms) == 1 and f.terms[0] in best.terms and (f.causes or f.unnamed)
         if part and best.score - f.score < OVER_NULL_NATS and f.score - race.null > OVER_NULL_NATS:
             return f
     return best
 
 
-def _stands_for(f: LaplaceFit, best: LaplaceFit, cause: str) -> bool:
-    """Whether a fit explains the data by another cause in the place of this one."""
-    others = set(best.named) - {cause}
-    return (
-        f.allowed and cause not in f.named and not f.unnamed and len(f.terms) <= len(best.terms)
-        and others <= set(f.named) and bool(set(f.named) - others)
-    )  # fmt: skip
-
-
 def _named(
-    race: SpecimenRace,
-    best: LaplaceFit,
-    cause: str,
-    alternatives: tuple[str, ...],
-    torque_Nm: float,
+    race: SpecimenRace, best: LaplaceFit, held: HeldAgainst[LaplaceFit], torque_Nm: float
 ) -> NamedCause:
-    without = max([race.null, *(f.score for f in race.fits if cause not in f.named)])
-    value, std = magnitude(race, best, cause)
+    value, std = magnitude(race, best, held.cause)
+    twist_arcsec = ARCSEC_PER_RAD * torque_Nm * float(np.mean(race.data.fe.total))
     return NamedCause(
-        cause, probability(cause, ((f.named, f.score) for f in race.fits)), alternatives, value, std,
-        UNITS.get(cause, "mm"), best.score - without,
-        ARCSEC_PER_RAD * torque_Nm * _relative_rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
-        none=race.data.fe.base_zone if cause == LOAD_ZONE else 0.0,
-    )  # fmt: skip
+        held.cause,
+        probability=held.probability,
+        alternatives=tuple(held.alternatives),
+        magnitude=value,
+        magnitude_std=std,
+        unit=UNITS.get(held.cause, "mm"),
+        evidence_nats=held.evidence_nats,
+        rms_arcsec=twist_arcsec * _relative_rms(race, best, (held.cause,)),
+        none=race.data.fe.base_zone if held.cause == LOAD_ZONE else 0.0,
+    )
 
 
 def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, float]:
     """The magnitude (docs/contract.md) and its deviation, doubt between alike explanations included."""
     alike = [
-        f for f in race.fits if f.named == best.named and best.score - f.score < OVER_NULL_NATS
+        f for f in race.fits if f.causes == best.causes and best.score - f.score < OVER_NULL_NATS
     ]
     each = [_value(race, f, cause) for f in alike]
     weight = weights([f.score for f in alike])

@@ -109,7 +109,7 @@ def explain(
     wrong = [
         (t.sensitivity.key, float(v))
         for t, v in zip(decision.chosen.terms, decision.chosen.mean[1:], strict=True)
-        if t.sensitivity is not None and t.owner in decision.chosen.named
+        if t.sensitivity is not None and t.owner in decision.chosen.causes
     ]
     if not wrong:
         return found, decision

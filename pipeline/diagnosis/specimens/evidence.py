@@ -94,7 +94,7 @@ class LaplaceFit:
     allowed: bool
 
     @property
-    def named(self) -> tuple[str, ...]:
+    def causes(self) -> tuple[str, ...]:
         """Ids of its findings: a dimension within its tolerance is none."""
         return tuple(
             t.owner for t, v in zip(self.terms, self.mean[1:], strict=True) if _finding(t, v)

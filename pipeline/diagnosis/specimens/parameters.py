@@ -23,11 +23,13 @@ evenly, a real wave generator mostly takes it at its lobes, or part of the way."
 LEAST_LOBES_SHARE = 0.01
 """Of the flexspline's compliance: where the zone changes less, it cannot be told, as rigs repeat to 1 %."""
 WRONG_TOLERANCES = 3.0
-"""A dimension that is wrong is off by some general tolerances."""
+"""A dimension that is wrong is off by some general tolerances: the standard deviation of how many. Judgement:
+six times as wide as one that is right, so that what is beyond the tolerance is mostly wrong."""
 TOLERANCE_SHARE = 0.5
-"""A dimension that is right is off by some half of its tolerance."""
+"""A dimension that is right is off by some half of its tolerance, which is then two deviations: 95 % of parts
+are within."""
 MOST_TOLERANCES = 8.0
-"""Beyond, it would be another drawing."""
+"""Beyond, it would be another drawing: of wrong dimensions, by WRONG_TOLERANCES, one in 130."""
 UNNAMED_STRUCTURE_SPREAD = 0.07
 """Standard deviation of ln K [1] for structure without a name, taken: seven times what rigs repeat to, so
 that whatever stands out of the noise fits."""

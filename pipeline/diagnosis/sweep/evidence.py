@@ -70,6 +70,16 @@ class GaussianEvidence:
         return np.repeat(positive, [t.width for t in self.terms])
 
 
+def log_evidence(matrix: np.ndarray, right: np.ndarray) -> float:
+    """½ rᵀM⁻¹r − ½ ln|M| [nats]: log evidence of amplitudes, marginalised by their Gaussian posterior.
+
+    Up to a constant of the data and of the prior. `matrix` (p, p) is XᵀX with the inverse variances of the
+    prior, `right` (p,) is Xᵀy, whitened both.
+    """
+    explained = right @ np.linalg.solve(matrix, right)
+    return float(explained / 2 - np.linalg.slogdet(matrix)[1] / 2)
+
+
 def gaussian_evidence(
     columns: DesignMatrix, target: np.ndarray, kept: np.ndarray, noise: Noise
 ) -> GaussianEvidence:

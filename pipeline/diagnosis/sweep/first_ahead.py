@@ -16,9 +16,9 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
+    StepFit,
     looped_functions,
     nats_over,
-    step_misfit,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, on_both_sides
 
@@ -110,11 +110,11 @@ def first_ahead(
     """
     if not on_both_sides(history.torque_Nm):
         return None
-    smooth, rows = looped_functions(history), len(history)
+    rows = len(history)
+    step = StepFit(looped_functions(history), angle_arcsec, gap_arcsec, band_Nm)
 
     def misfit(later_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
-        beyond = history.torque_Nm - later_Nm
-        return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, least)
+        return step.misfit(history.torque_Nm - later_Nm, least)
 
     steady = steadied(history, deadband_Nm(history))
     coarse = np.linspace(0, LARGEST_FRICTION, COARSE_PLACES + 1)[1:] * history.largest_Nm

@@ -11,10 +11,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.step_place import (
+    StepFit,
     changing_heights,
     nats_over,
     rows_judged,
-    step_misfit,
     stiffness_of_positions,
     zeros_of_cycles,
 )
@@ -49,12 +49,11 @@ def first_offset(
     smooth = np.column_stack(
         [*zeros, positions, x, np.abs(x), x**2, x**3, direction, direction * x**2]
     )
-    heights = changing_heights(history)
+    step = StepFit(smooth, angle_arcsec, gap_arcsec, band_Nm, changing_heights(history))
     places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * largest
 
     def misfit(place: float) -> float:
-        beyond = history.torque_Nm - place
-        return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, heights=heights)
+        return step.misfit(history.torque_Nm - place)
 
     table = np.array([misfit(p) for p in places])
     at_zero = misfit(0.0)

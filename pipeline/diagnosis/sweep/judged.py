@@ -38,33 +38,42 @@ class JudgedSweep:
 
 
 def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
-    """The verdict on a record; why there is none where rows are too few or drowned in noise."""
-    shortage = too_few_torques(sweep)
+    """The verdict on a record; why there is none where rows are too few or drowned in noise.
+
+    The steps in order, each with its file.
+    """
+    shortage = too_few_torques(sweep)  # too_few_torques.py
     if shortage is not None:
         return shortage
+    short = thinned(sweep)  # ../measurement/thinning.py
     try:
-        prepared = prepare(thinned(sweep), prediction)
+        prepared = prepare(short, prediction)  # prepare.py
     except TooFewRowsError as error:
         return FewRows(error.count, error.wanted)
-    explained = with_friction_ahead(prepared) or with_torque_offset(run_race(prepared))
-    if (hidden := drowned(explained)) is not None:
+    explained = with_friction_ahead(prepared)  # ahead_race.py
+    if explained is None:
+        plain = run_race(prepared)  # race.py
+        explained = with_torque_offset(plain)  # offset_race.py
+    hidden = drowned(explained)  # limits.py
+    if hidden is not None:
         return hidden
-    causes = named_causes(explained)
-    left = left_over(explained)
-    decision = judged(explained, causes, left)
-    broken = broken_limit(sweep, explained, decision.causes)
+    causes = named_causes(explained)  # named_causes.py
+    left = left_over(explained)  # left_over.py
+    decision = judged(explained, causes, left)  # left_over.py
+    broken = broken_limit(sweep, explained, decision.causes)  # limits.py
     if broken is not None:
-        decision = overruled(broken, beside=decision.unexplained)
-    if decision.verdict == "consistent" and (slow := slow_noise(explained)) is not None:
-        decision = overruled(slow)
-    misread = None
-    if broken is None or not isinstance(
-        broken.structure, FarSlope
-    ):  # a wrong unit or column bends all
-        misread = _misread(prepared, explained, decision)
-    if misread is not None:  # whatever else was found is what the race made of it
+        decision = overruled(broken, beside=decision.unexplained)  # ../decision.py
+    if decision.verdict == "consistent":
+        slow = slow_noise(explained)  # limits.py
+        if slow is not None:
+            decision = overruled(slow)  # ../decision.py
+    # a wrong unit or column bends all
+    bent = broken is not None and isinstance(broken.structure, FarSlope)
+    misread = None if bent else _misread(prepared, explained, decision)
+    if misread is not None:
         late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
-        decision = overruled(late)
+        # whatever else was found is what the race made of it
+        decision = overruled(late)  # ../decision.py
     return JudgedSweep(sweep, explained, left, decision, misread)
 
 
@@ -76,7 +85,7 @@ def _misread(
     # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
     # curve's, a few loads of a gear that does nothing seem to
     if decision.unexplained:
-        found = backward_of(prepared, explained)
+        found = backward_of(prepared, explained)  # backward.py
     if found is None and (decision.causes or decision.unexplained):
-        return late_angle_of(prepared, explained)
+        return late_angle_of(prepared, explained)  # late_angle.py
     return found

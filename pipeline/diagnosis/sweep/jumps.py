@@ -10,6 +10,7 @@ from scipy.special import ndtr
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.encoder_step import ROUNDING_RATIO
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
+from flexspline.pipeline.diagnosis.sweep.best_of_looks import p_value_of_best
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
@@ -50,7 +51,7 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     left, motion = fit.residual()[kept], direction_of_loading(history)[kept]
     pieces = stretches_of(history, kept)
     found = [_skewness(left, motion, pieces, rows) for rows in JUMP_BLOCK_ROWS]
-    p_value = min(1.0, len(JUMP_BLOCK_ROWS) * float(ndtr(-max(found))))
+    p_value = p_value_of_best(float(ndtr(-max(found))), len(found))
     if p_value > STRUCTURE_P_VALUE:
         return None
     every = float(np.var(left))

@@ -58,23 +58,39 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
-        widest = identified.fit.widest_loop_arcsec() if c == FRICTION else None
-        found.append(NamedCause(
-            c, beside_unweighed(chance, unweighed), tuple(dict.fromkeys(rivals)),
-            magnitude[c], std[c], known_causes()[c].unit, nats, identified.rms[c],
-            tuple(units[u] for u in shares.own) if shares else (), _ahead_Nm(explained, c), widest,
-            c == DRIFT and may_follow_temperature(identified),
-        ))  # fmt: skip
+        found.append(
+            NamedCause(
+                c,
+                probability=beside_unweighed(chance, unweighed),
+                alternatives=tuple(dict.fromkeys(rivals)),
+                magnitude=magnitude[c],
+                magnitude_std=std[c],
+                unit=known_causes()[c].unit,
+                evidence_nats=nats,
+                rms_arcsec=identified.rms[c],
+                own_units=tuple(units[u] for u in shares.own) if shares else (),
+                ahead_Nm=_ahead_Nm(explained, c),
+                widest_arcsec=identified.fit.widest_loop_arcsec() if c == FRICTION else None,
+                or_temperature=c == DRIFT and may_follow_temperature(identified),
+            )
+        )
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()[OFFSET]
         slope = identified.fit.measured_rig().compliance
-        found.append(NamedCause(
-            offset.id, probability_of_gain(explained.offset_nats), (),
-            explained.offset_Nm,
-            hypot(explained.crossing.std_Nm, offset.shape_doubt * explained.offset_Nm),
-            offset.unit, explained.offset_nats,
-            abs(slope * explained.offset_Nm),
-        ))  # fmt: skip
+        found.append(
+            NamedCause(
+                offset.id,
+                probability=probability_of_gain(explained.offset_nats),
+                alternatives=(),
+                magnitude=explained.offset_Nm,
+                magnitude_std=hypot(
+                    explained.crossing.std_Nm, offset.shape_doubt * explained.offset_Nm
+                ),
+                unit=offset.unit,
+                evidence_nats=explained.offset_nats,
+                rms_arcsec=abs(slope * explained.offset_Nm),
+            )
+        )
     return tuple(found)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SIGMAS
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence, log_evidence
 from flexspline.pipeline.diagnosis.sweep.first_offset import first_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
@@ -120,8 +120,7 @@ def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
         p = e.prepared
         again = gaussian_evidence(p.columns, p.target, common, quieter)
         best = Search(again).candidate(e.identified.best.terms)
-        gain = float(again.base_right @ np.linalg.solve(again.base_gram, again.base_right))
-        fit = best.score + gain / 2 - again.total / 2 - np.linalg.slogdet(again.base_gram)[1] / 2
-        return fit - SPIKE_NATS * spikes[id(e)]
+        of_base = log_evidence(again.base_gram, again.base_right)
+        return best.score + of_base - again.total / 2 - SPIKE_NATS * spikes[id(e)]
 
     return total(found) - total(plain)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Shape
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, log_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 TUNING_STEPS = 4
@@ -79,8 +79,7 @@ def _value(evidence: GaussianEvidence, blocks: list[np.ndarray]) -> float:
     """Log evidence of base and blocks, up to a constant."""
     x, prior = evidence.base_with(blocks)
     matrix = x.T @ x + np.diag(prior)
-    right = x.T @ evidence.y
-    return float(right @ np.linalg.solve(matrix, right) / 2 - np.linalg.slogdet(matrix)[1] / 2)
+    return log_evidence(matrix, x.T @ evidence.y)
 
 
 def tunable(

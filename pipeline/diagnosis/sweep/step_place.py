@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
@@ -108,39 +110,50 @@ def changing_heights(history: History) -> np.ndarray:
     return to_one(columns - columns.mean(axis=0), CONSTANT_SHARE)
 
 
-def step_misfit(
-    beyond_Nm: np.ndarray,
-    smooth: np.ndarray,
-    angle_arcsec: np.ndarray,
-    gap_arcsec: float,
-    band_Nm: float,
-    least: float = LEAST_STEP,
-    heights: np.ndarray | None = None,
-) -> float:
-    """Sum of squares [arcsec²] that smooth functions (n, k) and a step leave; infinite without a step.
+@dataclass(frozen=True)
+class StepFit:
+    """What is fitted to a record's angle beside a step of the gap, wherever the step is.
 
-    Rows so near the step that they may lie on either side count as the mean of the others: else a place that
-    many rows are near would have the least.
-
-    `beyond_Nm` (n,) is how far the torque of each row lies beyond the step's place. The step's height is
-    free, but one below `least` times the gap is none. `heights` (n, m), each of mean 0: what it may also
-    be in proportion to.
+    Attributes
+    ----------
+    smooth : (n, k) functions. angle_arcsec : (n,). band_Nm : half width of the gap's crossing.
+    heights : (n, m), each of mean 0: what the step's height may also be in proportion to.
     """
-    looked = np.arange(0, len(beyond_Nm), max(1, len(beyond_Nm) // MOST_FIRST_ROWS))
-    rows = looked[np.abs(beyond_Nm[looked]) > BESIDE_BAND * band_Nm]
-    side = np.sign(beyond_Nm[rows])
-    changing = np.empty((len(rows), 0)) if heights is None else heights[rows] * side[:, None]
-    basis = np.column_stack([smooth[rows], changing, side])
-    weight = np.ones(len(rows))
-    left = angle_arcsec[rows]
-    for _ in range(2):
-        found = weighted_fit(basis, angle_arcsec[rows], weight)
-        left = angle_arcsec[rows] - basis @ found
-        scale = robust_std(left) + ROUNDING_ARCSEC
-        weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
-    if found[-1] < least * gap_arcsec:
-        return np.inf
-    return float(np.mean(np.minimum(np.abs(left), 2 * gap_arcsec) ** 2)) * len(looked)
+
+    smooth: np.ndarray
+    angle_arcsec: np.ndarray
+    gap_arcsec: float
+    band_Nm: float
+    heights: np.ndarray | None = None
+
+    def misfit(self, beyond_Nm: np.ndarray, least: float = LEAST_STEP) -> float:
+        """Sum of squares [arcsec²] that the functions and a step leave; infinite without a step.
+
+        Rows so near the step that they may lie on either side count as the mean of the others: else a place
+        that many rows are near would have the least.
+
+        `beyond_Nm` (n,) is how far the torque of each row lies beyond the step's place. The step's height is
+        free, but one below `least` times the gap is none.
+        """
+        looked = np.arange(0, len(beyond_Nm), max(1, len(beyond_Nm) // MOST_FIRST_ROWS))
+        rows = looked[np.abs(beyond_Nm[looked]) > BESIDE_BAND * self.band_Nm]
+        basis, angle_arcsec = self._basis(rows, np.sign(beyond_Nm[rows])), self.angle_arcsec[rows]
+        weight = np.ones(len(rows))
+        left = angle_arcsec
+        for _ in range(2):
+            found = weighted_fit(basis, angle_arcsec, weight)
+            left = angle_arcsec - basis @ found
+            scale = robust_std(left) + ROUNDING_ARCSEC
+            weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
+        if found[-1] < least * self.gap_arcsec:
+            return np.inf
+        return float(np.mean(np.minimum(np.abs(left), 2 * self.gap_arcsec) ** 2)) * len(looked)
+
+    def _basis(self, rows: np.ndarray, side: np.ndarray) -> np.ndarray:
+        """(r, k + m + 1) of some rows, the last the step, on whose `side` (r,) each lies."""
+        if self.heights is None:
+            return np.column_stack([self.smooth[rows], side])
+        return np.column_stack([self.smooth[rows], self.heights[rows] * side[:, None], side])
 
 
 def weighted_fit(basis: np.ndarray, values: np.ndarray, weight: np.ndarray) -> np.ndarray:

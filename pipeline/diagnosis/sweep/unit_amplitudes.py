@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.sweep.evidence import log_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 OWN_NATS = 5.0
-"""Evidence that separate amplitudes must gain over a common one."""
+"""Nats that separate amplitudes must gain over a common one: odds of 150 to 1, by judgement, as each cause of
+each record is asked and one that differs has the units judged apart."""
 SHARE_STD = 2.0
 """Prior standard deviation of a unit's amplitude, over the common one: a ratio of 0 or 3 is likely."""
 SHOWS, SHOWS_NOT = 4.0, 2.0
@@ -75,9 +78,5 @@ def _fit(
     precision = np.diag(np.concatenate([prior, np.full(k, SHARE_STD**-2)]))
     matrix, right = x.T @ x + precision, x.T @ y
     inverse = np.linalg.inv(matrix)
-    evidence = (
-        right @ inverse @ right / 2
-        - np.linalg.slogdet(matrix)[1] / 2
-        + k * np.log(SHARE_STD**-2) / 2
-    )
-    return ((inverse @ right)[-k:], inverse[-k:, -k:]), float(evidence)
+    evidence = log_evidence(matrix, right) - k * log(SHARE_STD)
+    return ((inverse @ right)[-k:], inverse[-k:, -k:]), evidence

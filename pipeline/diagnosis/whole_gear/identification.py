@@ -10,7 +10,7 @@ the first two apart. Where none fits, two together are tried (`pairs`); where no
 | inputs, and how each changes the model | `inputs.py` |
 | each input alone | `fitted_input.py` |
 | two together | `pairs.py` |
-| outcome, error on other cycles, the torque that tells two apart | here |
+| outcome, error on other cycles, the torque that tells two apart | here, limits in `../decision.py` |
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from scipy.special import chdtrc
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.decision import MISFIT_P_VALUE, RIVAL_CHI_SQUARE
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
@@ -40,10 +41,6 @@ from flexspline.pipeline.gear_chain import Chain
 
 NUMERICAL_SHARE = 0.005
 """Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
-MISFIT_P_VALUE = 0.01
-"""Probability of a chi square as large below which a curve does not fit."""
-RIVAL_CHI_SQUARE = 6.0
-"""Chi square by which a rival may fit worse: 2·3 nats, odds of 20 to 1."""
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0

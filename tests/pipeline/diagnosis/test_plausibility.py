@@ -15,10 +15,17 @@ from mislabelled import ABSURD, NONE, STRANGE, Fault, mislabelled
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.diagnosis.measurement.record import (
+    EndPoints,
+    Measurement,
+    Specimens,
+    Sweep,
+    read_measurement,
+)
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
-from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.shortage import Drowned
+from flexspline.pipeline.diagnosis.sweep.size import sweep_size
 from flexspline.results.diagnosis.record import diagnosis_record
 
 SEED = 1711
@@ -26,11 +33,17 @@ CLEAN = [draw_case(SEED, k, "clean") for k in range(4)]
 ROOT = Path(__file__).parents[3]
 
 
-def checked(case: Case, text: str, tmp_path: Path) -> None:
+def predicted(case: Case) -> Prediction:
+    return prediction_of(design_from(tomllib.loads(case.design)), case.K_b, case.K_e)
+
+
+def checked(case: Case, text: str, tmp_path: Path) -> Measurement:
+    """The measurement, which is not refused."""
     path = tmp_path / "rig.csv"
     path.write_text(text, encoding="utf-8")
-    prediction = prediction_of(design_from(tomllib.loads(case.design)), case.K_b, case.K_e)
-    refuse_absurd(read_measurement(path), prediction, case.K_b, case.K_e)
+    measurement = read_measurement(path)
+    refuse_absurd(measurement, predicted(case), case.K_b, case.K_e)
+    return measurement
 
 
 def diagnosed(case: Case, text: str, tmp_path: Path) -> Diagnosis:
@@ -53,7 +66,12 @@ def test_an_absurd_size_is_refused_with_its_reason(name: str, number: int, tmp_p
 def test_records_with_effects_of_real_size_are_not_refused(number: int, tmp_path: Path) -> None:
     """Any of the hidden effects, alone and in pairs, and effects of no known cause."""
     case = draw_case(SEED + 1, number)
-    checked(case, mislabelled(case, NONE), tmp_path)
+    sweep = checked(case, mislabelled(case, NONE), tmp_path)
+    assert isinstance(sweep, Sweep)
+    size = sweep_size(sweep.history, sweep.angle_arcsec, predicted(case))
+    assert size is not None
+    # no effect of real size doubles or halves the twist; 30 times is absurd
+    assert 1 / 2 < size.chord < 2
 
 
 @pytest.mark.usefixtures("causes_only")
@@ -118,7 +136,9 @@ def test_end_points(unit: str, factor: float, needle: str, tmp_path: Path) -> No
     head = END_POINTS.format(plus=f"angle_plus_{unit}", minus=f"angle_minus_{unit}")
     text = head + "".join(f"u{i},0.5,{half * (1 + i / 50)},{-half}\n" for i in range(5))
     if not needle:
-        checked(case, text, tmp_path)
+        points = checked(case, text, tmp_path)
+        assert isinstance(points, EndPoints)
+        assert points.unit == ("u0", "u1", "u2", "u3", "u4")
         return
     with pytest.raises(MeasurementError, match=needle):
         checked(case, text, tmp_path)
@@ -136,7 +156,9 @@ def test_specimens(unit: str, part: str, factor: float, needle: str, tmp_path: P
     rows = "".join(f"s{i},{K[part] * factor * (1 + i / 100)},{part}\n" for i in range(4))
     text = f"specimen,stiffness_{unit},part\n{rows}"
     if not needle:
-        checked(case, text, tmp_path)
+        specimens = checked(case, text, tmp_path)
+        assert isinstance(specimens, Specimens)
+        assert specimens.part == (part,) * 4
         return
     with pytest.raises(MeasurementError, match=needle):
         checked(case, text, tmp_path)

@@ -190,7 +190,12 @@ def test_two_torques_show_asymmetry_that_one_cannot(
     assert [c.id for c in outcome.causes] == ["direction_asymmetry"]
     # K₊/K₋ = 0.8/1.2: (K₊ − K₋)/mean = −0.4, in %
     assert outcome.causes[0].magnitude == pytest.approx(-40, abs=5)
-    assert outcome.gain is None or outcome.gain.rmse_after <= outcome.gain.rmse_before + 1
+    gain = outcome.gain
+    assert gain is not None
+    # softer one way and stiffer the other leaves the total as it is: only the calibration changes its error
+    assert gain.rmse_after == gain.rmse_calibrated
+    # by a mean of the four other units, at the worst of five that scatter about no error: 1 + 1/4 each
+    assert gain.rmse_after <= 1.25 * gain.rmse_before
     one = diagnose_end_points(DESIGN, only(made, 1.0), PREDICTION)[0]
     assert "direction_asymmetry" not in {c.id for c in one.causes}
 

@@ -223,7 +223,7 @@ def test_a_wall_within_its_tolerance_is_no_finding(bench, fe) -> None:
     outcome, analysis = diagnosed(bench, K)
     assert outcome.verdict == "consistent"
     assert [t.sensitivity.key for t in analysis.chosen.terms] == [WALL]
-    assert analysis.chosen.named == ()
+    assert analysis.chosen.causes == ()
 
 
 def test_a_modulus_within_its_uncertainty_is_no_finding(bench, fe) -> None:

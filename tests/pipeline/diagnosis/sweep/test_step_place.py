@@ -14,8 +14,8 @@ from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE_PLACES, FINE_
 from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST_FRICTION as MOST_FRICTION
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_STEPS, first_offset
 from flexspline.pipeline.diagnosis.sweep.step_place import (
+    StepFit,
     changing_heights,
-    step_misfit,
     zeros_of_cycles,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH
@@ -84,10 +84,9 @@ def test_a_step_that_follows_temperature_is_one_step() -> None:
     noise = np.random.default_rng(3).normal(0, 0.5, len(HISTORY))
     turned = gap / 2 * np.sign(HISTORY.torque_Nm) + noise
     smooth = np.column_stack([*zeros_of_cycles(HISTORY), HISTORY.torque_Nm])
-    one = step_misfit(HISTORY.torque_Nm, smooth, turned, GAP, BAND)
-    found = step_misfit(
-        HISTORY.torque_Nm, smooth, turned, GAP, BAND, heights=changing_heights(HISTORY)
-    )
+    one = StepFit(smooth, turned, GAP, BAND).misfit(HISTORY.torque_Nm)
+    changing = StepFit(smooth, turned, GAP, BAND, changing_heights(HISTORY))
+    found = changing.misfit(HISTORY.torque_Nm)
     assert found == pytest.approx(
         0.25 * len(HISTORY), rel=0.1
     )  # the noise; rms good to 3 % of 1400 rows
