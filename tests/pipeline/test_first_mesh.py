@@ -52,10 +52,16 @@ def first_elements(design: Design, folder: Path) -> int:
 
 
 def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", inf)
+    """For a design that asks for 5 %, and has holes; one that asks for 0.1 % has another limit."""
+    monkeypatch.setattr(solid_torsion, "COARSE_FIRST_ELEMENTS", inf)
     usual = first_elements(DESIGN, tmp_path / "usual")
-    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", usual - 1)
+    monkeypatch.setattr(solid_torsion, "COARSE_FIRST_ELEMENTS", usual - 1)
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
+    fine = DESIGN.changed({"solver.tolerance_pct": 0.1})
+    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", inf)
+    assert first_elements(fine, tmp_path / "fine") == usual
+    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", usual - 1)
+    assert first_elements(fine, tmp_path / "fine, coarser") < usual
 
 
 @pytest.mark.parametrize(("about_axis", "tries"), [(True, 2), (False, 7)])

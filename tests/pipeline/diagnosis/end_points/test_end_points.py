@@ -115,7 +115,7 @@ def test_explanation_is_where_it_says() -> None:
 def test_mid_positions_say_nothing(article) -> None:
     assert article.end_points.mids.mid_arcsec == pytest.approx((9, 2, -19.5, 25))
     note = next(n for n in end_point_notes(article.end_points) if n.startswith("mid positions"))
-    assert "free" in note
+    assert "angle zero is unknown" in note
     shifted = moved(60.0)
     again = diagnose_end_points(DESIGN, shifted, PREDICTION)[0]
     assert again.verdict == "ambiguous"
