@@ -63,10 +63,10 @@ WHOLE_SHARE = 0.2
 """Of the tolerance, for the distance of the bounds of the part without holes: 0.1 to 0.7 s at 0.1 %. How far
 off its field is at the walls is told by itself."""
 COARSE_FIRST_ELEMENTS, COARSE_TOLERANCE = 8_000, 0.003
-"""Of a first mesh where holes and keyway are solved alone, and the tolerance from which on it is that coarse.
-Eighteen random shafts, 0.5 to 5 % asked: 39.5 s of the processor for 43.0; two of them took a mesh more. K and
-the peak stress of `keyed-shaft`: 1.3 s for 2.3, ± 0.029 % for 0.024, 2.239 MPa for 2.234. At 0.1 % a mesh more
-is usual."""
+"""Of a first mesh where holes and keyway are solved alone, and the tolerance from which on it is so coarse.
+Eighteen random shafts, 0.5 to 5 % asked: 39.5 s of the processor for 43.0; two of them took a mesh more. K
+and the peak stress of `keyed-shaft`: 1.3 s for 2.3, ± 0.029 % for 0.024, 2.239 MPa for 2.234. At 0.1 % a mesh
+more is usual."""
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
