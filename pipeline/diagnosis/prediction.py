@@ -29,7 +29,9 @@ class Prediction:
     gap_arcsec, gap_std_arcsec : the whole angular gap at 20 °C.
     bend : how the curve leaves the line, where the whole gear is computed; None: it is straight.
     measured_bend : how a record's curve leaves its own line, where it is the simulated bend scaled as its
-        slope is (`whole_gear/scaled_bend.py`); None: as simulated.
+        slope is, or less (`whole_gear/scaled_bend.py`); None: as simulated.
+    lost_bend : what is then missing of a bend scaled as the slope is, or of the simulated one, whichever is
+        nearer; None: nothing.
     """
 
     compliance: float
@@ -38,6 +40,7 @@ class Prediction:
     gap_std_arcsec: float
     bend: Bend | None = None
     measured_bend: Bend | None = None
+    lost_bend: Bend | None = None
 
     def angle_arcsec(self, history: History) -> np.ndarray:
         """(n,) predicted angle, with zero θ0."""
@@ -49,7 +52,7 @@ class Prediction:
         """What a race begins with: the line as simulated, the bend as measured."""
         if self.measured_bend is None:
             return self
-        return replace(self, bend=self.measured_bend, measured_bend=None)
+        return replace(self, bend=self.measured_bend, measured_bend=None, lost_bend=None)
 
     def twist_arcsec(self, low_Nm: Torque, high_Nm: Torque) -> Torque:
         """From one torque to a higher one along the line, with the gap where they differ in sign.

@@ -26,6 +26,7 @@ from scipy.special import chdtrc
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.bend import NUMERICAL_SHARE
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
@@ -38,8 +39,6 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
 
-NUMERICAL_SHARE = 0.005
-"""Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
 MISFIT_P_VALUE = 0.01
 """Probability of a chi square as large below which a curve does not fit."""
 RIVAL_CHI_SQUARE = 6.0
