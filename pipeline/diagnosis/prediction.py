@@ -32,6 +32,7 @@ class Prediction:
         slope is, or less (`whole_gear/scaled_bend.py`); None: as simulated.
     lost_bend : what is then missing of a bend scaled as the slope is, or of the simulated one, whichever is
         nearer; None: nothing.
+    rated_Nm : rated torque, where the design states it.
     """
 
     compliance: float
@@ -41,6 +42,7 @@ class Prediction:
     bend: Bend | None = None
     measured_bend: Bend | None = None
     lost_bend: Bend | None = None
+    rated_Nm: float | None = None
 
     def angle_arcsec(self, history: History) -> np.ndarray:
         """(n,) predicted angle, with zero θ0."""
@@ -84,4 +86,5 @@ def prediction_of(
         compliance * hypot(design.uncertainty.youngs_modulus_pct / 100, K_error),
         gap_rad(design) * ARCSEC_PER_RAD,
         hypot(doubt.get("flank_clearance", 0.0), doubt.get("radial_clearance", 0.0)),
+        rated_Nm=design.gear.rated_torque_Nm,
     )

@@ -128,7 +128,10 @@ def _gain(found: GearIdentification) -> str:
 
 def _next(found: GearIdentification) -> str:
     if found.apart is None:
-        return "no torque up to twice the largest tells them apart, so measure one of them itself"
+        return (
+            "no torque up to twice the largest, within the rated one, tells them apart, so measure one of "
+            "them itself"
+        )
     return (
         f"at {found.apart.torque_Nm:.3g} N·m they differ by {found.apart.difference_arcsec:.2g} arcsec, "
         "so measure there"

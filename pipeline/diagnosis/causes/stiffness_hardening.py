@@ -79,7 +79,7 @@ class StiffnessHardening(Cause):
     positive = True
     tunable = ("parameter", "second", "share")
     vary = "torque_amplitude"
-    reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
+    reveals = "a sweep to a larger torque within the rated one, with finely spaced steps below a fifth of it"
 
     def shapes(self, rig: FitContext) -> list[Shape]:
         laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]

@@ -94,7 +94,7 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
         lost = prediction.bend.scaled(nearer - size)
         return replace(prediction, measured_bend=prediction.bend.scaled(size), lost_bend=lost)
     allowed = ALLOWED_SIGMAS * prediction.compliance_std / prediction.compliance
-    if nearer == 1.0 or scale <= 0 or abs(scale - 1) <= allowed:
+    if nearer == 1.0 or abs(scale - 1) <= allowed:
         return prediction
     return replace(prediction, measured_bend=prediction.bend.scaled(scale))
 
