@@ -20,7 +20,7 @@ FEWEST_SIZE_ROWS = 8
 RATIO_DEVIATIONS = 4.0
 """Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
 STEP_DEVIATIONS = 2.0
-"""The same of the step's sign beside a slope that is far off: one in 44. Friction makes its deviation wide."""
+"""The same of the sign of a step beside a slope far off: one in 44. Friction makes its deviation wide."""
 LARGEST_CORRELATION = 0.99
 """Of neighbouring residuals: a slow effect counts as no more than 200 rows of one reading each."""
 SPIKE_PERCENT = 1.0
