@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+NUMERICAL_SHARE = 0.005
+"""Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
+
 
 @dataclass(frozen=True)
 class Bend:

@@ -125,6 +125,7 @@ DoingKind = Literal[
     "hold",
     "larger_torque",
     "other_positions",
+    "between_positions",
     "more_cycles",
     "compare_channels",
     "compare_channels_and_cell",
@@ -140,10 +141,14 @@ DoingKind = Literal[
 
 @dataclass(frozen=True)
 class Doing:
-    """What a rig is to do; `torques_Nm`: of end points, or the largest of each sweep, where it names them."""
+    """What a rig is to do; `torques_Nm`: of end points, or the largest of each sweep, where it names them.
+
+    `rated_Nm` : rated torque beside them, where the design states it.
+    """
 
     kind: DoingKind
     torques_Nm: tuple[float, ...] = ()
+    rated_Nm: float | None = None
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,7 +33,12 @@ from flexspline.pipeline.diagnosis.measurement.units import (
     symbol,
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.slope_hints import ANGLE_UNITS, TORQUE_UNITS, unit_hints
+from flexspline.pipeline.diagnosis.slope_hints import (
+    ANGLE_UNITS,
+    AS_GEAR,
+    TORQUE_UNITS,
+    unit_hints,
+)
 from flexspline.pipeline.diagnosis.structure import FarSlope, UnitSuspect
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
@@ -93,6 +99,8 @@ def absurd_sweep(size: SweepSize, sweep: Sweep) -> Absurd | None:
         return _far_twist(size.chord, size, sweep)
     if high < OPPOSITE_SHARE:
         return FallingAngle("sweep")
+    if far_interchanged(size) and size.steps_back:
+        return replace(far_slope(size, sweep), interchanged=True)
     if size.span_arcsec > ABSURD_RATIO * (size.simulated_arcsec + POSITION_ERROR_arcsec):
         return _far_twist(size.span_arcsec / size.simulated_arcsec, size, sweep)
     return far_slope(size, sweep) if slope_beyond(size, ABSURD_RATIO) else None
@@ -118,6 +126,13 @@ def _far_twist(ratio: float, size: SweepSize, sweep: Sweep) -> FarTwist:
     head = column.head if column else ""
     connected = abs(size.chord) >= NO_SIGNAL_SHARE
     return FarTwist(ratio, suspects(size, sweep), connected, _interchanged(size, sweep), head)
+
+
+def far_interchanged(size: SweepSize) -> bool:
+    """Whether the slope is surely as no gear's, and as simulated where each reading is the other."""
+    least, most = size.compliance_range
+    far = least > LIKELY_RATIO or most < 1 / LIKELY_RATIO
+    return far and 1 / AS_GEAR < size.interchanged < AS_GEAR
 
 
 def _interchanged(size: SweepSize, sweep: Sweep) -> bool:

@@ -29,7 +29,10 @@ class Prediction:
     gap_arcsec, gap_std_arcsec : the whole angular gap at 20 °C.
     bend : how the curve leaves the line, where the whole gear is computed; None: it is straight.
     measured_bend : how a record's curve leaves its own line, where it is the simulated bend scaled as its
-        slope is (`whole_gear/scaled_bend.py`); None: as simulated.
+        slope is, or less (`whole_gear/scaled_bend.py`); None: as simulated.
+    lost_bend : what is then missing of a bend scaled as the slope is, or of the simulated one, whichever is
+        nearer; None: nothing.
+    rated_Nm : rated torque, where the design states it.
     """
 
     compliance: float
@@ -38,6 +41,8 @@ class Prediction:
     gap_std_arcsec: float
     bend: Bend | None = None
     measured_bend: Bend | None = None
+    lost_bend: Bend | None = None
+    rated_Nm: float | None = None
 
     def angle_arcsec(self, history: History) -> np.ndarray:
         """(n,) predicted angle, with zero θ0."""
@@ -49,7 +54,7 @@ class Prediction:
         """What a race begins with: the line as simulated, the bend as measured."""
         if self.measured_bend is None:
             return self
-        return replace(self, bend=self.measured_bend, measured_bend=None)
+        return replace(self, bend=self.measured_bend, measured_bend=None, lost_bend=None)
 
     def twist_arcsec(self, low_Nm: Torque, high_Nm: Torque) -> Torque:
         """From one torque to a higher one along the line, with the gap where they differ in sign.
@@ -81,4 +86,5 @@ def prediction_of(
         compliance * hypot(design.uncertainty.youngs_modulus_pct / 100, K_error),
         gap_rad(design) * ARCSEC_PER_RAD,
         hypot(doubt.get("flank_clearance", 0.0), doubt.get("radial_clearance", 0.0)),
+        rated_Nm=design.gear.rated_torque_Nm,
     )

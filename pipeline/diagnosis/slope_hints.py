@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, log
 
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
@@ -66,23 +67,30 @@ class SlopeRatio:
 
 @dataclass(frozen=True)
 class SlopeHint:
-    """A slope softer than simulated by a ratio, and the units that would explain it just so.
+    """A slope softer or stiffer than simulated by a ratio, and the units that would explain it just so.
 
-    Without any it may be a complete gear's, which the sum of two parts is not.
+    `interchanged` : it is as simulated where each reading is the other. `whole_gear` : it may be a complete
+    gear's, which the sum of two parts is not. Else it is far from the simulated one, and nothing says why.
     """
 
     slope: SlopeRatio
     units: tuple[UnitSuspect, ...] = ()
+    interchanged: bool = False
+    whole_gear: bool = False
 
 
 def slope_hint(
-    sweep: Sweep, prediction: Prediction, causes: Sequence[NamedCause] = ()
+    sweep: Sweep,
+    prediction: Prediction,
+    causes: Sequence[NamedCause] = (),
+    negative_gap: bool = False,
 ) -> SlopeHint | None:
-    """What the slope may come from; None where it is near the simulated one, or no unit's factor stiffer.
+    """What the slope may come from; None where it is near the simulated one, or named, and no unit's factor.
 
     `causes` : those named. Series compliance among them is the slope, with friction and temperature allowed
     for; else the slope is a straight line's. So it is where hardening is named too: the two share the slope
     in a proportion that the record leaves open, and a compliance of 148 ± 53 % says nothing of their sum.
+    `negative_gap` : the best explanation needs one, as readings that are interchanged do.
     """
     if not len(sweep.history):
         return None
@@ -97,8 +105,33 @@ def slope_hint(
     if slope.ratio <= 0:
         return None
     units = unit_hints(size, sweep, slope)
+    swapped = _may_be_interchanged(size, negative_gap)
     soft = slope.low > AS_GEAR and prediction.bend is None
-    return SlopeHint(slope, units) if units or soft else None
+    unsaid = slope.far and not any(known_causes()[c.id].elastic for c in causes)
+    if not (units or swapped or soft or unsaid):
+        return None
+    return SlopeHint(slope, units, swapped, soft)
+
+
+def slope_off(sweep: Sweep, prediction: Prediction) -> SlopeRatio | None:
+    """A straight line's slope where it is surely not the simulated one; None else."""
+    size = sweep_size(sweep.history, sweep.angle_arcsec, prediction) if len(sweep.history) else None
+    if size is None:
+        return None
+    slope = _line_slope(size)
+    allowed = DEVIATIONS * prediction.compliance_std / prediction.compliance + NEAR_FACTOR
+    return slope if slope.low > 1 + allowed or 0 < slope.high < 1 - allowed else None
+
+
+def _may_be_interchanged(size: SweepSize, negative_gap: bool) -> bool:
+    """Whether a slope far from the simulated one is near it where each reading is the other.
+
+    And nothing says that it is not: readings in their columns make the angle step on at the gap.
+    """
+    other = size.interchanged
+    if size.steps_on or not 1 / AS_GEAR < other < AS_GEAR:
+        return False
+    return negative_gap or (_line_slope(size).far and abs(log(other)) < abs(log(size.compliance)))
 
 
 def unit_hints(

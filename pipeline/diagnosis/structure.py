@@ -15,6 +15,7 @@ FormKind = Literal[
     "even_curve",
     "ripple",
     "softening",
+    "less_bend",
     "uneven_loop",
     "leading",
     "gives_way",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes import known_causes
@@ -14,7 +14,6 @@ from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NamedCause, 
 from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.sweep.next_measurement import (
     AMPLITUDES,
-    LARGER,
     LONG_HOLD,
     MORE_CYCLES,
     POSITIONS_DEG,
@@ -80,8 +79,10 @@ DOING: Mapping[DoingKind, str] = {
     "beyond_own_rates": f"repeat the sweep at {SLOWER} of its slowest cycle's rate of torque and at "
     f"{QUICKER} that of its quickest",
     "hold": f"hold the torque at both ends, each time for as long as {LONG_HOLD:g} ramps take",
-    "larger_torque": _sweep_to(AMPLITUDES),
+    "larger_torque": "sweep to {torques} N·m",
     "other_positions": POSITIONS,
+    "between_positions": "repeat the sweep at wave generator angles half way between those measured, in "
+    "mixed order",
     "more_cycles": f"{FURTHER_CYCLES} and repeat the sweep",
     "compare_channels": f"{COMPARE}the effect of a late reading is then {SLOWER} as large",
     "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then {SLOWER} as wide, that of "
@@ -100,10 +101,31 @@ DOING: Mapping[DoingKind, str] = {
 """What a rig is to do."""
 
 
+BEYOND: Collection[DoingKind] = ("larger_torque", "other_ends", "closed_sweeps")
+"""Those that may go to larger torques than were measured."""
+
+
+EXTENDS: Mapping[DoingKind, str] = {
+    "larger_torque": "to extend it to other torques",
+    "between_positions": "to test it at other positions, at any torque",
+}
+"""What confirms a cause that a record has shown."""
+
+
 def doing_words(doing: Doing) -> str:
     """What to do."""
-    torques = ", ".join(f"{torque:g}" for torque in doing.torques_Nm)
-    return DOING[doing.kind].format(torques=torques)
+    said = DOING[doing.kind].format(torques=", ".join(f"{t:g}" for t in doing.torques_Nm))
+    return said + _rated(doing) if doing.kind in BEYOND else said
+
+
+def _rated(doing: Doing) -> str:
+    """How the torques lie to the rated one, which no advice exceeds by itself."""
+    if doing.rated_Nm is None:
+        return ", as far as the gear's rated torque allows (gear.rated_torque_Nm is not stated)"
+    rated = f"the rated torque of {doing.rated_Nm:g} N·m"
+    if max(doing.torques_Nm) > doing.rated_Nm:
+        return f" and no further: the record itself exceeds {rated}"
+    return f", within {rated}"
 
 
 def why(after: NextMeasurement, kind: MeasurementKind, found: Iterable[NamedCause] = ()) -> str:
@@ -125,8 +147,9 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
-        if after.vary != cause.vary and after.doing == LARGER:
-            return f"the record determines {titles[0]} well; to extend it to other torques: {doing}"
+        if after.doing is not None and after.doing.kind in EXTENDS:
+            to = EXTENDS[after.doing.kind]
+            return f"the record determines {titles[0]} well; {to}: {doing}"
         return f"to confirm {titles[0]}: {doing}"
     separated = _one_from_others(titles)
     if after.doing is None or not after.separation:  # nothing was computed

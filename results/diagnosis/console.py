@@ -8,7 +8,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.channels import channel_words, left_out_words
-from flexspline.results.diagnosis.data_used import calibrated_sentences
+from flexspline.results.diagnosis.data_used import calibrated_sentences, own_slope
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
@@ -46,7 +46,11 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         left = f"unexplained in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
         lines += prose(left, "  ", "    ")
     if diagnosis.calibration is not None:
-        lines += prose(calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome))
+        lines += prose(
+            calibrated_sentences(
+                diagnosis.calibration, diagnosis.prediction, outcome, own_slope(diagnosis)
+            )
+        )
     lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement

@@ -11,9 +11,11 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_off
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts
 from flexspline.results.diagnosis.reading import columns_record, form_record
+from flexspline.results.diagnosis.slope_words import slope_times
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped, signed
 
@@ -77,15 +79,23 @@ def _calibrated(calibration: Calibration) -> dict[str, float]:
 
 
 def calibrated_sentences(
-    calibration: Calibration, prediction: Prediction, outcome: DiagnosisOutcome
+    calibration: Calibration,
+    prediction: Prediction,
+    outcome: DiagnosisOutcome,
+    slope: SlopeRatio | None = None,
 ) -> str:
-    """Gap and compliance as fitted to the record, each with the simulated one, and what else moves them."""
+    """Gap and compliance as fitted to the record, each with the simulated one, and what else moves them.
+
+    `slope`: the record's own, where it is surely another than simulated (`slope_off`).
+    """
     gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
-        compliance = _against(
-            calibration.compliance, prediction.compliance, prediction.compliance_std
-        )
+        found = calibration.compliance
+        if slope is not None and _is_held(found, prediction, slope):
+            compliance = _held(found, prediction, slope)
+        else:
+            compliance = _against(found, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
     beside = ", without the effects found" if calibration.beside_effects else ""
     said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
@@ -99,6 +109,26 @@ def calibrated_sentences(
     if outcome.unexplained:
         said += " An effect is unexplained; it may have changed them by more than the stated ±."
     return said
+
+
+def own_slope(diagnosis: Diagnosis) -> SlopeRatio | None:
+    """Of a sweep, where it is surely not the simulated one."""
+    sweep = diagnosis.measurement
+    return slope_off(sweep, diagnosis.prediction) if isinstance(sweep, Sweep) else None
+
+
+def _is_held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> bool:
+    """Whether a compliance lies nearer to the simulated one than to the record's own slope."""
+    return 2 * abs(measured.value / prediction.compliance - 1) < abs(slope.ratio - 1)
+
+
+def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
+    return (
+        f"{plus_minus(measured.value, measured.std)} (held near the simulated "
+        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the record's own slope is "
+        f"{slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, and what it differs by counts as "
+        "an effect)"
+    )
 
 
 def _against(measured: Estimate, simulated: float, std: float) -> str:

@@ -129,7 +129,8 @@ def _gain(found: GearIdentification) -> str:
 def _next(found: GearIdentification) -> str:
     if found.apart is None:
         return (
-            "no torque up to twice the largest distinguishes them, so measure one of them directly"
+            "no torque up to twice the largest, and within the rated torque, distinguishes them, so measure "
+            "one of them directly"
         )
     return (
         f"at {found.apart.torque_Nm:.3g} N·m they differ by {found.apart.difference_arcsec:.2g} arcsec, "

@@ -64,7 +64,8 @@ def _scaled(prediction: Prediction) -> str:
     if prediction.bend is None or prediction.measured_bend is None:
         return ""
     most = max(map(abs, prediction.measured_bend.angle_arcsec))
-    return f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
+    said = f"; in this record by up to {most:.3g} arcsec"
+    return said if prediction.lost_bend else f"{said}, scaled by the same factor as its slope"
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:

@@ -6,7 +6,7 @@ from flexspline.pipeline.diagnosis.absurd_size import given_words
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
-from flexspline.pipeline.diagnosis.structure import FarSlope
+from flexspline.pipeline.diagnosis.structure import FarSlope, NegativeGap
 
 
 def slope_hint_words(diagnosis: Diagnosis) -> str:
@@ -14,23 +14,32 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
     sweep = diagnosis.measurement
     if not isinstance(sweep, Sweep):
         return ""
-    if any(u.limit for u in diagnosis.outcome.unexplained):
-        slopes = (isinstance(u.structure, FarSlope) for u in diagnosis.outcome.unexplained)
-        return given_words(diagnosis.given) if any(slopes) else ""  # it asks for units itself
-    hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes)
+    limits = [u.structure for u in diagnosis.outcome.unexplained if u.limit]
+    if any(isinstance(limit, FarSlope) for limit in limits):  # it asks for units itself
+        return given_words(diagnosis.given)
+    if not all(isinstance(limit, NegativeGap) for limit in limits):
+        return ""
+    hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes, bool(limits))
     if hint is None:
         return ""
-    times = _times(hint.slope)
+    times = slope_times(hint.slope)
+    if hint.interchanged:
+        return (
+            f" The slope is {times} than simulated; with torque and angle interchanged it would be near:"
+            " check the columns."
+        )
     if hint.units:
         units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
         return f" The slope is {times} than simulated, as with {units}: check the units."
-    return (
-        f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
-        " whose teeth and bearing are elastic too? Then use --against gear."
-    )
+    if hint.whole_gear:
+        return (
+            f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
+            " whose teeth and bearing are elastic too? Then use --against gear."
+        )
+    return f" The slope is {times} than simulated: check the units, and that the record is of this design."
 
 
-def _times(slope: SlopeRatio) -> str:
+def slope_times(slope: SlopeRatio) -> str:
     """ "1.36 times softer"; both ends of a slope that is known roughly."""
     soft = slope.ratio > 1
     ends = (slope.low, slope.high) if soft else (1 / slope.high, 1 / slope.low)

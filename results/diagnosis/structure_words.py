@@ -34,6 +34,7 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("ripple", "torque_Nm"): "a ripple over torque",
     ("ripple", "angle_arcsec"): "a ripple over the output angle",
     ("softening", "torque_Nm"): "stiffness that falls with load",
+    ("less_bend", "torque_Nm"): "a curve that bends less over torque than the gear's simulated one",
     ("uneven_loop", "direction"): "a loop that differs between the two sides",
     ("leading", "direction"): "output leads torque",
     ("gives_way", "torque_amplitude"): "a lock or clamp that slips under torque",

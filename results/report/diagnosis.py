@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, 
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.diagnosis.data_used import calibrated_sentences
+from flexspline.results.diagnosis.data_used import calibrated_sentences, own_slope
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
@@ -87,7 +87,9 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.read_as.sha256))))
     yield Paragraph(worded(compared(diagnosis, used)))
     if diagnosis.calibration is not None:
-        sentence = calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome)
+        sentence = calibrated_sentences(
+            diagnosis.calibration, diagnosis.prediction, outcome, own_slope(diagnosis)
+        )
         yield Paragraph(worded(sentence))
 
 

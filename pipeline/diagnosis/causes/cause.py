@@ -164,7 +164,7 @@ class Cause(ABC):
         """Its kind, and the names of the parameters that are refined."""
         return (*self.kind(shape), *(k for k in self.tunable if shape.get(k, 0.0) > 0))
 
-    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
+    def but_for_a_spring(self, shape: Shape, rig: FitContext) -> list[Shape]:
         """Shapes that differ from this one by twist in proportion to torque alone.
 
         Beside a spring they fit a record equally, and make it another size.

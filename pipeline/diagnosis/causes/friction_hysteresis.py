@@ -129,7 +129,7 @@ class FrictionHysteresis(Cause):
             and (shape["loaded"] != GROWING or LEAST_GROWTH <= shape["growth"] <= MOST_GROWTH)
         )
 
-    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
+    def but_for_a_spring(self, shape: Shape, rig: FitContext) -> list[Shape]:
         if AHEAD in shape or shape.get("loaded", EVERYWHERE) != EVERYWHERE:
             return []
         return [{**shape, "held": 1 - shape["held"]}]

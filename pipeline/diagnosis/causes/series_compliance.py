@@ -29,7 +29,10 @@ class SeriesCompliance(Cause):
     shape_doubt = 0.0007
     """One and two deviations cover 59 and 90 % of 29 sizes."""
     vary = "torque_amplitude"
-    reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
+    reveals = (
+        "larger torque within the rated one, and the part suspected (bolts, tooth mesh) clamped or "
+        "removed"
+    )
 
     def title_at(self, magnitude: float) -> str:
         return self.title if magnitude >= 0 else STIFFER

@@ -39,6 +39,8 @@ HELD = (FAR_OUT, ON_THE_CHORD, AT_ZERO)
 BENDS_ON, LEVELLED_OFF = (LAWS["tanh"], LAWS["rational"]), 0.02
 """Laws that level off, but not at the largest torque; their slope there, over the chord's, from which that
 counts: less of a hardening of a quarter of the twist is half a percent of the stiffness."""
+ONLY_SOFTER = (FAR_OUT, AT_LARGEST)
+"""Where a wind-up only softens: at no torque does it take off any slope."""
 LIMITS = {
     0: (0.1, 0.78),
     1: (0.1, 0.7),
@@ -81,17 +83,19 @@ class StiffnessHardening(Cause):
     positive = True
     tunable = ("parameter", "second", "share")
     vary = "torque_amplitude"
-    reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
+    reveals = "a sweep to a larger torque within the rated one, with finely spaced steps below a fifth of it"
 
     def shapes(self, rig: FitContext) -> list[Shape]:
         laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]
         laws += [("power", p) for p in POWERS] + [("cubic", 1.0)]
         laws += [("rational", s) for s in SCALES]
         laws += [("cubic spring", c) for c in CUBIC_SHARES]
+        where = _possible(rig)
         found: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.largest_Nm}
             for law, p in laws
             for held in self._held({"law": LAWS[law], "parameter": p})
+            if held in where
         ]
         found += [
             {
@@ -101,11 +105,13 @@ class StiffnessHardening(Cause):
             for p, q in TWO_KNEES
             for share in SHARES
             for held in HELD
+            if held in where
         ]  # fmt: skip
         return found
 
-    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
-        return [{**shape, "held": h} for h in self._held(shape) if h != shape["held"]]
+    def but_for_a_spring(self, shape: Shape, rig: FitContext) -> list[Shape]:
+        held = {*self._held(shape)} & {*_possible(rig)} - {shape["held"]}
+        return [{**shape, "held": h} for h in sorted(held)]
 
     @classmethod
     def _held(cls, shape: Shape) -> tuple[int, ...]:
@@ -205,3 +211,12 @@ class StiffnessHardening(Cause):
                 return 1 + p
             case _:
                 return (1 + p) / p
+
+
+def _possible(rig: FitContext) -> tuple[int, ...]:
+    """Where the stiffness may be as simulated.
+
+    Of a gear whose whole curve is scaled, or bends less, nothing but that makes it stiffer: what winds up is
+    in series with it, and only softens.
+    """
+    return (*HELD, AT_LARGEST) if rig.prediction.measured_bend is None else ONLY_SOFTER

@@ -14,9 +14,11 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Doing, NextMeasurement
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, PlanSeparation, separations
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.rated_limit import within_rated
 
 AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none."""
+"""Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none. Not
+beyond rated torque."""
 PLANNED_ROWS = 64
 """Rows of one loop [1]: sixteen between zero and an end draw its shape. The repeat has as many."""
 TIMES_OVER = PLANNED_ROWS // 2
@@ -25,20 +27,22 @@ READING_ARCSEC = 1.0
 """No reading is taken to be better than this when plans are compared."""
 
 
-def plans(torque_Nm: float) -> list[MeasurementPlan]:
-    """What can be done with the same rig."""
-    ends = [s * a * torque_Nm for a in AMPLITUDES for s in (1, -1)]
+def plans(torque_Nm: float, rated_Nm: float | None = None) -> list[MeasurementPlan]:
+    """What can be done with the same rig, within the rated torque that the design states."""
+    listed = within_rated((a * torque_Nm for a in AMPLITUDES), torque_Nm, rated_Nm)
+    ends = [s * end for end in listed for s in (1, -1)]
     quarter = np.arange(1, PLANNED_ROWS // 4 + 1) / (PLANNED_ROWS // 4)
     loop = np.concatenate([quarter, 1 - quarter, -quarter, quarter - 1])
     one = np.concatenate([loop, loop])
-    listed = tuple(a * torque_Nm for a in AMPLITUDES)
     return [
         MeasurementPlan(
             "repeat",
             Doing("same_ends"),
             History.course(np.tile([torque_Nm, -torque_Nm], TIMES_OVER)),
         ),
-        MeasurementPlan("torque_Nm", Doing("other_ends", listed), History.course(np.array(ends))),
+        MeasurementPlan(
+            "torque_Nm", Doing("other_ends", listed, rated_Nm), History.course(np.array(ends))
+        ),
         MeasurementPlan(
             "sweep",
             Doing("closed_sweep", (torque_Nm,)),
@@ -46,8 +50,8 @@ def plans(torque_Nm: float) -> list[MeasurementPlan]:
         ),
         MeasurementPlan(
             "torque_amplitude",
-            Doing("closed_sweeps", listed),
-            History.course(np.concatenate([a * torque_Nm * loop for a in AMPLITUDES])),
+            Doing("closed_sweeps", listed, rated_Nm),
+            History.course(np.concatenate([end * loop for end in listed])),
         ),
     ]
 
@@ -62,7 +66,7 @@ def separated(
     """
     calibration = (prediction.compliance_std, prediction.gap_std_arcsec)
     noise = max(noise_arcsec, READING_ARCSEC)
-    return tuple(separations(plans(torque_Nm), models, noise, calibration))
+    return tuple(separations(plans(torque_Nm, prediction.rated_Nm), models, noise, calibration))
 
 
 def next_measurement(

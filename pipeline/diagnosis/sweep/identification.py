@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.sweep.curve_doubt import beyond_curve_doubt
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import LINEAR, SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.owner_rms import (
@@ -80,6 +81,7 @@ def identify(search: Search, beside: bool = False) -> Identification:
         if not weak:
             break
         best = _best_of_owners(evidence, weak[min(weak, key=lambda c: nats[c])])
+    best = beyond_curve_doubt(search, best)
     fit = fit_regressors(evidence, best.terms)
     ahead = {FRICTION} if evidence.columns.ahead else set()
     rms = owner_rms(fit, sorted(best.owners | ahead))

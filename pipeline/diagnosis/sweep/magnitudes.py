@@ -89,7 +89,8 @@ def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[t
     at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
     for place, i in enumerate(best.terms):
         term = evidence.terms[i]
-        for shape in term.cause.but_for_a_spring(term.shape) if term.cause else ():
+        rig = evidence.columns.rig
+        for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
             other = at.get(shape_key(term.owner, shape))
             if other is not None:
                 yield (*best.terms[:place], other, *best.terms[place + 1 :])

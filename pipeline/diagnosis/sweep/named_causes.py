@@ -113,14 +113,12 @@ def _stands_for_springs(identified: Identification) -> bool:
     """Whether the record fixes the compliance without friction, and does not beside it.
 
     Friction that never saturates then takes up elastic twist: a spring left out looks the same. All else is
-    beside both: a stiffness of few positions may leave the compliance open too, and is no friction. Ahead of
-    the teeth friction is no term, and no set is the same without it.
+    beside both: a stiffness of few positions or a soft wind-up may leave the compliance open too, and is no
+    friction; nor is what carries torque ahead of the teeth, which takes up no twist.
     """
     evidence, fit = identified.search.evidence, identified.fit
     stated = float(evidence.columns.base_prior[fit.units])
     others = [i for i in identified.best.terms if evidence.terms[i].owner != FRICTION]
-    if evidence.columns.ahead is not None:
-        others = []
     alone = fit_regressors(evidence, others).calibration.compliance
     beside = fit.calibration.compliance
     assert alone is not None

@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Aim, Doing, NextMeasurement
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.rated_limit import WORTH_SHARE, within_rated
 from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -36,9 +37,8 @@ POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 LONG_HOLD = 20.0
 """Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
 AMPLITUDES = (0.25, 0.5, 1.0, 1.5)
-"""Times the largest torque: two octaves within the record, and half as much again beyond it."""
-LARGER = Doing("larger_torque")
-"""What no record of its largest torque has: how an effect goes on beyond it."""
+"""Times the largest torque: two octaves within the record, and half as much again beyond it, but not beyond
+rated torque."""
 MORE_CYCLES = 40
 """Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
 
@@ -89,7 +89,9 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     last = int(h.cycle.max())
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
     many = [place0 + p for p in POSITIONS_DEG]
-    k, n = len(many), len(AMPLITUDES)
+    larger = _larger(prepared)
+    amplitudes = [t / cycles.largest_Nm for t in larger.torques_Nm]
+    k, n = len(many), len(amplitudes)
     slower, faster, beyond = _rates_beyond(prepared.sweep.history, cycles.ramp_s)
     same = (place0, place0)
     return [
@@ -110,8 +112,8 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         ),
         MeasurementPlan(
             "torque_amplitude",
-            LARGER,
-            cycles.of(AMPLITUDES, (1.0,) * n, (0.0,) * n, (place0,) * n, (last,) * n),
+            larger,
+            cycles.of(amplitudes, (1.0,) * n, (0.0,) * n, (place0,) * n, (last,) * n),
         ),
         MeasurementPlan(
             "input_angle_deg",
@@ -124,6 +126,18 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
             cycles.of(places=same, numbers=(last, last + MORE_CYCLES)),
         ),
     ]
+
+
+def _larger(prepared: PreparedSweep) -> Doing:
+    """Amplitudes within the record, and one that shows what it has not: how an effect goes on beyond."""
+    largest, rated = prepared.sweep.history.largest_Nm, prepared.prediction.rated_Nm
+    torques = within_rated((share * largest for share in AMPLITUDES), largest, rated)
+    return Doing("larger_torque", torques, rated)
+
+
+def _goes_beyond(doing: Doing, prepared: PreparedSweep) -> bool:
+    """Whether the larger torques are larger than the record's."""
+    return max(doing.torques_Nm) > WORTH_SHARE * prepared.sweep.history.largest_Nm
 
 
 def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
@@ -176,10 +190,16 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     if len(models) < 2:
         vary = known_causes()[cause].vary
         doing: Doing | None = None
+        larger = _larger(explained.prepared)
         if aim == "confirm" and _has_shown(known_causes()[cause], explained):
-            vary, doing = "torque_amplitude", LARGER
+            if known_causes()[cause].shows_over == "input_angle_deg":  # whatever the torque
+                doing = Doing("between_positions")
+            elif _goes_beyond(larger, explained.prepared):
+                vary, doing = "torque_amplitude", larger
+            else:
+                return None
         if rivals == (SERIES,):  # a loop shrinks with its amplitude, a spring does not
-            vary, doing = "torque_amplitude", LARGER
+            vary, doing = "torque_amplitude", larger
         if rivals == (OFFSET,):  # the torque cell's zero, which it shows by itself
             vary, doing = "torque_Nm", Doing("read_torque_zero")
         return NextMeasurement(vary, aim, (cause, *rivals), doing)

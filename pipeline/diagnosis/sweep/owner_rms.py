@@ -16,12 +16,17 @@ def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
     return {owner: rms_together(fit, (owner,)) for owner in owners}
 
 
-def rms_beyond_calibration(fit: SweepFit, owner: str) -> float:
-    """Rms [arcsec] of what an owner adds, less what zeros, compliance and gap can be of it."""
+def rms_beyond_calibration(fit: SweepFit, *owners: str) -> float:
+    """Rms [arcsec] of what owners add together, less what zeros, compliance and gap can be of it."""
+    kept = fit.evidence.kept
+    return beyond_calibration(fit, sum((fit.added(o) for o in owners), np.zeros(len(kept))))
+
+
+def beyond_calibration(fit: SweepFit, angle_arcsec: np.ndarray) -> float:
+    """Rms [arcsec] over the kept rows of an angle (n,), less what zeros, compliance and gap can be of it."""
     kept, columns = fit.evidence.kept, fit.evidence.columns.base
-    added = fit.added(owner)[kept]
     straight = columns[kept][:, : fit.units + 2]
-    return rms(less_fitted(added, straight))
+    return rms(less_fitted(angle_arcsec[kept], straight))
 
 
 def rms_together(fit: SweepFit, owners: Sequence[str]) -> float:

@@ -203,7 +203,8 @@ def _refined(evidence: GaussianEvidence, terms: Sequence[int]) -> list[tuple[Reg
     if SERIES in {evidence.terms[i].owner for i in terms}:
         for term, shape in list(found):
             if term.cause is not None:
-                found += [(term, other) for other in term.cause.but_for_a_spring(shape)]
+                others = term.cause.but_for_a_spring(shape, evidence.columns.rig)
+                found += [(term, other) for other in others]
     return found
 
 

@@ -19,6 +19,8 @@ FEWEST_SIZE_ROWS = 8
 """Rows beyond the crossing: half of them for zero, drift, slope and gap."""
 RATIO_DEVIATIONS = 4.0
 """Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
+STEP_DEVIATIONS = 2.0
+"""The same of the sign of a step beside a slope far off: one in 44. Friction makes its deviation wide."""
 LARGEST_CORRELATION = 0.99
 """Of neighbouring residuals: a slow effect counts as no more than 200 rows of one reading each."""
 SPIKE_PERCENT = 1.0
@@ -35,6 +37,8 @@ class SweepSize:
     ----------
     chord, chord_std : twist from the lowest to the highest torque, the gap in it, over the simulated.
     compliance, compliance_std : slope on one side of the gap over the simulated.
+    slope : that slope itself [arcsec per N·m]. gap_arcsec, gap_std_arcsec : the step beside it; 0 where
+        torque stays on one side.
     elastic_arcsec : the slope's twist over all torques. residual_arcsec : rms off the line.
     simulated_arcsec : the chord's; simulated_gap_arcsec : the gap in it.
     span_arcsec : range of all readings of a unit.
@@ -44,6 +48,9 @@ class SweepSize:
     chord_std: float
     compliance: float
     compliance_std: float
+    slope: float
+    gap_arcsec: float
+    gap_std_arcsec: float
     elastic_arcsec: float
     residual_arcsec: float
     simulated_arcsec: float
@@ -64,6 +71,28 @@ class SweepSize:
         std = self.compliance_std
         return self.compliance - RATIO_DEVIATIONS * std, self.compliance + RATIO_DEVIATIONS * std
 
+    @property
+    def interchanged(self) -> float:
+        """`compliance`, were each reading the other; 0 where the angle falls while torque rises.
+
+        A slope c [arcsec per N·m] is then one of 1/c.
+        """
+        return self.compliance / self.slope**2 if self.slope > 0 else 0.0
+
+    @property
+    def steps_back(self) -> bool:
+        """Whether the angle steps back where torque changes sign.
+
+        Readings interchanged do it, as the gap is crossed along the other axis: θ = c·T + ½ g·sign T is
+        T = θ/c − ½ (g/c)·sign θ.
+        """
+        return self.gap_arcsec + STEP_DEVIATIONS * self.gap_std_arcsec < 0
+
+    @property
+    def steps_on(self) -> bool:
+        """Whether it steps on, as the gap of readings that are in their columns makes it do."""
+        return self.gap_arcsec > STEP_DEVIATIONS * self.gap_std_arcsec > 0
+
 
 def sweep_size(
     history: History, angle_arcsec: np.ndarray, prediction: Prediction
@@ -73,7 +102,8 @@ def sweep_size(
     θ = zero + drift·row + c·T + ½ g·sign T, zero and drift of each unit its own, by least squares, once
     more without single spikes. Whole ramps off the line stay: where most rows lie in holds, ramps alone tell
     slope from gap, and within a hold torque varies by its reading's noise, over which angle has no slope. A
-    drift in step with the torque leaves c a large deviation, and no size.
+    drift in step with the torque leaves c a large deviation, and no size. Of a whole gear's curve the bend,
+    as the record has it, is taken off first.
     """
     step = -(-len(history) // MOST_SIZE_ROWS)
     h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
@@ -86,6 +116,8 @@ def sweep_size(
         for rows in h.unit_slices
     )
     h, angle = h.rows(far), angle[far]
+    if (bend := prediction.for_race.bend) is not None:
+        angle = angle - bend.at(h.torque_Nm)
     good = np.ones(len(angle), bool)
     for _ in range(2):
         found = _line(h.rows(good), angle[good])
@@ -103,6 +135,9 @@ def sweep_size(
         chord_std=float(np.sqrt(along @ cov @ along)) / simulated,
         compliance=c / prediction.compliance,
         compliance_std=float(np.sqrt(cov[0, 0])) / prediction.compliance,
+        slope=c,
+        gap_arcsec=g,
+        gap_std_arcsec=float(np.sqrt(cov[1, 1])),
         elastic_arcsec=abs(c) * extent,
         residual_arcsec=rms(residual),
         simulated_arcsec=simulated,

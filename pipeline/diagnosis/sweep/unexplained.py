@@ -8,21 +8,23 @@ from math import hypot
 
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.curve_doubt import RIPPLED
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
 
 NUISANCE_P = 1e-6
 """Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
-RIPPLED = ("?angle_arcsec", "?torque_Nm")
-"""What is a function of angle or torque alone, as a saw-tooth over the encoder's steps is."""
 JUMPS = (UnnamedForm("jumps"),)
 COMES_BACK = (UnnamedForm("comes_back"),)
 REMAINDER = (UnnamedForm("remainder"),)
 
 
 def made_by_rounding(identified: Identification, rounding_arcsec: float) -> frozenset[str]:
-    """Owners of the best set's ripples, where they are together no more than rounding leaves."""
+    """Owners of the best set's ripples, where they are together no more than rounding leaves.
+
+    A saw-tooth over the encoder's steps is a function of the angle.
+    """
     ripples = [owner for owner in RIPPLED if owner in identified.rms]
     together = hypot(*(identified.rms[owner] for owner in ripples))
     return frozenset(ripples if together < rounding_arcsec else ())

@@ -25,8 +25,11 @@ from scipy.special import chdtrc
 
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
+from flexspline.geometry.rated import rated_torque
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.bend import NUMERICAL_SHARE
 from flexspline.pipeline.diagnosis.decision import MISFIT_P_VALUE, RIVAL_CHI_SQUARE
+from flexspline.pipeline.diagnosis.rated_limit import within_rated
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
@@ -39,8 +42,6 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
 
-NUMERICAL_SHARE = 0.005
-"""Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0
@@ -71,7 +72,8 @@ class GearIdentification:
     pairs : those of two that fit, the best first, where no input alone does.
     left_arcsec : root mean square with the best input or pair, on cycles that were not fitted, and
         `before_arcsec` without it on the same; None of one cycle.
-    apart : None where nothing is named, or no torque up to twice the largest tells the first two apart.
+    apart : None where nothing is named, or no torque up to twice the largest, and to the rated one, tells the
+        first two apart.
     """
 
     outcome: InputsVerdict
@@ -130,7 +132,9 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearId
         rivals=tuple(f.key for f in rivals),
         before_arcsec=before,
         left_arcsec=left,
-        apart=_apart(inputs, chain, curve, (best, rivals[0])) if rivals else None,
+        apart=_apart(inputs, chain, curve, (best, rivals[0]), rated_torque(design)[0])
+        if rivals
+        else None,
     )
 
 
@@ -198,9 +202,11 @@ def _apart(
     chain: Chain,
     curve: CentralCurve,
     both: tuple[FittedInput, FittedInput],
+    rated_Nm: float,
 ) -> Apart | None:
-    """Where the two differ most, if a place as sure as those measured shows it."""
-    torques = curve.largest_Nm * np.array(RIVAL_TORQUE_SHARES)
+    """Where the two differ most, within rated torque, if a place as sure as those measured shows it."""
+    wished = curve.largest_Nm * np.array(RIVAL_TORQUE_SHARES)
+    torques = np.array(within_rated(wished.tolist(), curve.largest_Nm, rated_Nm))
     first, second = (
         inputs[each.key].changed(chain, each.value).angles(torques.tolist()) * ARCSEC_PER_RAD
         for each in both

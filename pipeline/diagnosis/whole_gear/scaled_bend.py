@@ -1,12 +1,15 @@
-"""A gear that is stiffer or softer than simulated all over: its curve bends less or more by the same factor.
+"""How much a record's curve bends: as simulated, by the factor of its slope, or less than either.
 
-A spring in series leaves the bend as it is. Which of the two a record shows is decided before the race, in
-which a bend that is scaled wrongly would be a hardening or a softening.
+A gear that is stiffer or softer than simulated all over bends less or more by the same factor; a spring in
+series leaves the bend as it is. Which of the two a record shows is decided before the race, in which a bend
+that is scaled wrongly would be a hardening or a softening. A soft wind-up bends a curve more, and is a cause
+of the race. A curve that bends much less than both has lost a part of the bend, which is no cause's.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,16 +21,55 @@ from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED_SIGMAS
 
 LOOP_POWERS = (0, 1, 2)
 """Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""
-FEWEST_BEND_ROWS = 24
+WIND_UPS = (0.06, 0.12, 0.25, 0.5)
+"""Of the largest torque, scales of a soft wind-up, tanh: without them it would pass for more bend."""
+FEWEST_BEND_ROWS = 32
 """Twice the unknowns of one unit."""
+LOST_RATIO, FEWEST_LOST_ROWS = 2.0, 40
+"""Squares left by the better of both bends over those left by a bend of its own size, from which a part of it
+is lost; of so many rows the odds are then a million to 1."""
+
+
+@dataclass(frozen=True)
+class _Record:
+    """What a record's angle (n,) is fitted with.
+
+    `beside` (n, k): columns of all that is neither slope nor bend; `wind_ups` (n, w): those of a soft
+    wind-up, none of them negative.
+    """
+
+    angle: np.ndarray
+    beside: np.ndarray
+    wind_ups: np.ndarray
+
+    def fitted(self, curves: Sequence[np.ndarray], taken: np.ndarray | float) -> _Fitted:
+        """By these curves (n,), none of them turned over, once `taken` is off the angle."""
+        from scipy.optimize import lsq_linear
+
+        columns = np.column_stack([*curves, self.wind_ups, self.beside])
+        size = np.abs(columns).max(axis=0)
+        size[size == 0] = 1.0
+        least = np.full(columns.shape[1], -np.inf)
+        least[: len(curves) + self.wind_ups.shape[1]] = 0.0
+        found = lsq_linear(columns / size, self.angle - taken, (least, np.inf), method="bvls")
+        return _Fitted((found.x / size)[: len(curves)], 2 * float(found.cost))
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    """By what each curve is scaled, and the sum of squares left."""
+
+    scales: np.ndarray
+    left: float
 
 
 def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     """The prediction with the bend that the record's curve has; as it was where a spring explains it better.
 
-    Slope on both sides of the gap, zero and drift of each unit, and a loop are fitted by least squares: once
-    beside the simulated bend, once with the bend scaled by the slope. Both have as many unknowns. A slope
-    within the stated uncertainty is no finding, and moves no bend.
+    Slope on both sides of the gap, zero and drift of each unit, a loop and a soft wind-up are fitted by least
+    squares: once beside the simulated bend, once with the bend scaled by the slope. Both have as many
+    unknowns. A slope within the stated uncertainty is no finding, and moves no bend. Where a bend of a size
+    of its own, smaller than both, leaves far less, it is the record's, and the rest is lost.
     """
     if prediction.bend is None:
         return prediction
@@ -36,13 +78,23 @@ def with_scaled_bend(prediction: Prediction, sweep: Sweep) -> Prediction:
     rows = np.abs(history.torque_Nm) > BAND_SHARE * largest
     if int(rows.sum()) < FEWEST_BEND_ROWS:
         return prediction
-    bend, line = prediction.bend.at(history.torque_Nm), prediction.compliance * history.torque_Nm
-    beside = _beside(sweep, largest)[rows]
-    angle = sweep.angle_arcsec[rows]
-    _, spring = _slope(line[rows], beside, angle - bend[rows])
-    scale, scaled = _slope((line + bend)[rows], beside, angle)
+    bend = prediction.bend.at(history.torque_Nm)[rows]
+    line = prediction.compliance * history.torque_Nm[rows]
+    share = history.torque_Nm[rows, None] / largest
+    twist = prediction.compliance * largest
+    wind_ups = twist * np.sign(share) * np.tanh(np.abs(share) / np.array(WIND_UPS))
+    record = _Record(sweep.angle_arcsec[rows], _beside(sweep, largest)[rows], wind_ups)
+    spring = record.fitted([line], bend)
+    scaled = record.fitted([line + bend], 0.0)
+    scale, own = float(scaled.scales[0]), record.fitted([line, bend], 0.0)
+    nearer = scale if scaled.left < spring.left else 1.0
+    size = float(own.scales[1])
+    best = min(scaled.left, spring.left)
+    if size < nearer and best > LOST_RATIO * own.left and int(rows.sum()) >= FEWEST_LOST_ROWS:
+        lost = prediction.bend.scaled(nearer - size)
+        return replace(prediction, measured_bend=prediction.bend.scaled(size), lost_bend=lost)
     allowed = ALLOWED_SIGMAS * prediction.compliance_std / prediction.compliance
-    if scaled >= spring or scale <= 0 or abs(scale - 1) <= allowed:
+    if nearer == 1.0 or abs(scale - 1) <= allowed:
         return prediction
     return replace(prediction, measured_bend=prediction.bend.scaled(scale))
 
@@ -58,11 +110,3 @@ def _beside(sweep: Sweep, largest: float) -> np.ndarray:
             own[unit] = values
             columns.append(own)
     return np.column_stack(columns)
-
-
-def _slope(curve: np.ndarray, beside: np.ndarray, angle: np.ndarray) -> tuple[float, float]:
-    """By what a curve (n,) is scaled, and the sum of squares that it leaves."""
-    columns = np.column_stack([curve, beside])
-    found = np.linalg.lstsq(columns, angle, rcond=None)[0]
-    left = angle - columns @ found
-    return float(found[0]), float(left @ left)

@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from hidden.case import Case
 from hidden.cases import draw_case
 from mislabelled import ABSURD, NONE, STRANGE, Fault, mislabelled
 
-from flexspline.geometry.load import design_from
+from flexspline.geometry.load import design_from, load_design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import (
@@ -27,6 +29,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.shortage import Drowned
 from flexspline.pipeline.diagnosis.sweep.size import sweep_size
 from flexspline.results.diagnosis.record import diagnosis_record
+from flexspline.results.diagnosis.summary import summary
 
 SEED = 1711
 CLEAN = [draw_case(SEED, k, "clean") for k in range(4)]
@@ -84,6 +87,47 @@ def test_interchanged_columns_are_asked_for(tmp_path: Path) -> None:
     with pytest.raises(MeasurementError) as caught:
         checked(case, mislabelled(case, Fault("angle_arcsec", float, "angle_deg")), tmp_path)
     assert "columns of torque" not in str(caught.value)
+
+
+LARGE = load_design(EXAMPLES / "xb1-40.toml")
+LARGE_K = 2 * ARCSEC_PER_RAD / 2.5
+"""Of flexspline and of shaft: 2.5 arcsec per N·m together. At 1 arcsec per N·m no slope would tell."""
+
+
+def large_record(
+    tmp_path: Path, swapped: bool, both_sides: bool = True, softer: float = 1.0
+) -> Path:
+    """Two cycles of 2.5·T, `softer` times, and 30·sign T arcsec, friction of 2 N·m ahead of it, and noise."""
+    noise = np.random.default_rng(12)
+    wave = np.sin(np.linspace(0, 4 * np.pi, 400)) * 120.0
+    torque = wave if both_sides else np.abs(wave) + 5.0
+    at, lines = 0.0, ["time_s,torque_Nm,angle_arcsec"]
+    for i, now in enumerate(torque):
+        at = min(max(at, now - 2.0), now + 2.0)
+        angle = softer * 2.5 * at + 30.0 * np.sign(at) + noise.normal(0, 0.3)
+        pair = (angle, now) if swapped else (now, angle)
+        lines.append(f"{2 * i},{pair[0]:.4f},{pair[1]:.4f}")
+    path = tmp_path / "large.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_interchanged_columns_of_a_stiff_gear_are_refused(tmp_path: Path) -> None:
+    """Slope 1/2.5 for 2.5, and the gap steps back: a size that gears have, but both numbers say the same."""
+    prediction = prediction_of(LARGE, LARGE_K, LARGE_K)
+    assert prediction.compliance == pytest.approx(2.5)
+    with pytest.raises(MeasurementError, match="columns of torque and angle interchanged"):
+        refuse_absurd(read_measurement(large_record(tmp_path, True)), prediction, LARGE_K, LARGE_K)
+    for softer in (0.5, 1.0, 3.5, 6.0):  # as much off the other way: the gap steps on
+        right = read_measurement(large_record(tmp_path, False, softer=softer))
+        refuse_absurd(right, prediction, LARGE_K, LARGE_K)
+
+
+def test_where_no_gap_shows_interchanged_columns_are_asked_for(tmp_path: Path) -> None:
+    found = diagnose_file(LARGE, large_record(tmp_path, True, both_sides=False), LARGE_K, LARGE_K)
+    assert "with torque and angle interchanged it would be near" in summary(found)
+    found = diagnose_file(LARGE, large_record(tmp_path, False, both_sides=False), LARGE_K, LARGE_K)
+    assert "interchanged" not in summary(found)
 
 
 @pytest.mark.parametrize(

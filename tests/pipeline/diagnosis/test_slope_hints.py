@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measure
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
-from flexspline.pipeline.diagnosis.slope_hints import slope_hint
+from flexspline.pipeline.diagnosis.slope_hints import slope_hint, slope_off
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.summary import summary
 
@@ -73,7 +73,22 @@ def test_a_record_twice_as_soft_may_be_of_a_complete_gear(tmp_path: Path) -> Non
     gear = predicted()
     curve = Prediction(gear.compliance, gear.compliance_std, gear.gap_arcsec, gear.gap_std_arcsec,
                        Bend((0.0, 1.0), (0.0, 0.1)))  # fmt: skip
-    assert slope_hint(soft, curve) is None  # it is compared with one already
+    beside = slope_hint(soft, curve)
+    assert beside is not None
+    assert not beside.whole_gear  # it is compared with one already
+
+
+def test_a_far_slope_that_no_cause_says_is_said(tmp_path: Path) -> None:
+    """Two and a half times stiffer is no unit's factor, and no complete gear's."""
+    stiff = sweep(tmp_path, torque_in(0.4))
+    hint = slope_hint(stiff, predicted())
+    assert hint is not None
+    assert (hint.units, hint.whole_gear, hint.interchanged) == ((), False, False)
+    assert slope_hint(stiff, predicted(), (series(-60.0, 0.3),)) is None  # its size says it
+    off = slope_off(stiff, predicted())
+    assert off is not None
+    assert off.ratio == pytest.approx(0.4, rel=0.05)
+    assert slope_off(sweep(tmp_path), predicted()) is None
 
 
 def test_the_summary_says_them(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.outcome import (
     Unexplained,
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.results.diagnosis.advice import SHOWS_STRUCTURE, why
 from flexspline.results.diagnosis.channels import CHANNELS, channel_words
@@ -60,6 +61,21 @@ def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
     assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
     assert "as simulated: this record does not narrow it" in said
+
+
+def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
+    """Held as simulated while the record is 6.5 times stiffer, it is not what the record leaves open."""
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    held = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
+    found = DiagnosisOutcome("unknown")
+    said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
+    assert "does not narrow" not in said
+    assert "the record's own slope is 1.54, 6.49 times stiffer" in said
+    # a compliance that follows the slope says it by itself
+    moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
+    said = calibrated_sentences(moved, prediction, found, SlopeRatio(0.86, 0.85, 0.87))
+    assert "own slope" not in said
+    assert "standard deviations" in said
 
 
 @pytest.mark.parametrize(

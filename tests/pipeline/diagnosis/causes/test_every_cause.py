@@ -240,7 +240,7 @@ def test_shapes_that_differ_but_for_a_spring_do(cause: Cause) -> None:
     torque = RIG.history.torque_Nm
     for shape in shapes(cause):
         own = cause.columns(shape, RIG.history)[:, 0]
-        for other in cause.but_for_a_spring(shape):
+        for other in cause.but_for_a_spring(shape, RIG):
             apart = cause.columns(other, RIG.history)[:, 0] - own
             slope = apart @ torque / (torque @ torque)
             assert apart == pytest.approx(slope * torque, abs=1e-9)

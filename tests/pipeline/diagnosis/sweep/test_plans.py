@@ -14,9 +14,10 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Doing
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling, separations
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, plans
+from flexspline.pipeline.diagnosis.sweep.next_measurement import plans
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.splits import rate_range
+from flexspline.results.diagnosis.advice import why
 
 pytestmark = pytest.mark.usefixtures("causes_only")
 
@@ -64,18 +65,18 @@ def sliding_record(periods_s: tuple[float, ...], slope: float = 10.0, width: flo
     ("periods", "vary", "doing"),
     [
         ((60.0, 60.0, 60.0, 60.0), "torque_rate", None),
-        ((20.0, 60.0, 720.0, 20.0), "torque_amplitude", LARGER),
+        ((20.0, 60.0, 720.0, 20.0), "torque_amplitude", "larger_torque"),
     ],
 )
 def test_what_the_record_has_is_not_asked_for(
-    periods: tuple[float, ...], vary: str, doing: Doing | None
+    periods: tuple[float, ...], vary: str, doing: str | None
 ) -> None:
     """Cycles that differ by 36 times have shown already that friction does not follow the rate."""
     outcome, _ = diagnose_sweep(sliding_record(periods), PREDICTION)
     assert [c.id for c in outcome.causes] == ["friction_hysteresis"]
     after = outcome.next_measurement
     assert after is not None
-    assert (after.aim, after.vary, after.doing) == ("confirm", vary, doing)
+    assert (after.aim, after.vary, after.doing and after.doing.kind) == ("confirm", vary, doing)
 
 
 def test_a_part_left_out_is_confirmed_by_larger_torques() -> None:
@@ -100,10 +101,11 @@ def test_other_rates_lie_beyond_those_of_the_record() -> None:
 
 
 @pytest.mark.parametrize(
-    ("warmer_K", "vary", "doing"), [(6.0, "torque_amplitude", LARGER), (0.6, "temperature_C", None)]
+    ("warmer_K", "vary", "doing"),
+    [(6.0, "torque_amplitude", "larger_torque"), (0.6, "temperature_C", None)],
 )
 def test_temperatures_that_the_record_has_are_not_asked_for(
-    warmer_K: float, vary: str, doing: Doing | None
+    warmer_K: float, vary: str, doing: str | None
 ) -> None:
     """Cycles 6 K apart have shown what the gap does with temperature; 3 K in all are a room’s own drift."""
     record = sliding_record((60.0,) * 6, width=0.0)
@@ -118,4 +120,56 @@ def test_temperatures_that_the_record_has_are_not_asked_for(
     assert [c.id for c in outcome.causes] == ["thermal_clearance"]
     after = outcome.next_measurement
     assert after is not None
-    assert (after.aim, after.vary, after.doing) == ("confirm", vary, doing)
+    assert (after.aim, after.vary, after.doing and after.doing.kind) == ("confirm", vary, doing)
+
+
+@pytest.mark.parametrize(
+    ("rated", "torques"),
+    [
+        (None, (0.49, 0.98, 1.96, 2.94)),
+        (8.0, (0.49, 0.98, 1.96, 2.94)),
+        (2.6, (0.49, 0.98, 1.96, 2.6)),
+        (2.0, None),  # as good as reached
+        (1.2, None),
+    ],
+)
+def test_no_larger_torque_is_asked_for_than_the_rated_one(
+    rated: float | None, torques: tuple[float, ...] | None
+) -> None:
+    """Of a record up to 1.96 N·m that has shown all but how its friction goes on beyond."""
+    prediction = replace(PREDICTION, rated_Nm=rated)
+    outcome, _ = diagnose_sweep(sliding_record((20.0, 60.0, 720.0, 20.0)), prediction)
+    after = outcome.next_measurement
+    if torques is None:
+        assert after is None
+        return
+    assert after is not None
+    assert after.doing == Doing("larger_torque", torques, rated)
+    said = why(after, "sweep")
+    assert "sweep to 0.49, 0.98, 1.96, " in said
+    stated = "within the rated torque of" if rated else "as far as the gear's rated torque allows"
+    assert stated in said
+
+
+def test_plans_that_are_compared_keep_to_rated_torque() -> None:
+    prepared = prepare(sliding_record((60.0,) * 4), replace(PREDICTION, rated_Nm=1.5))
+    for plan in plans(prepared):
+        assert plan.history.largest_Nm <= 2.0 + 1e-9  # what the record has reached itself
+
+
+def test_an_effect_of_the_position_asks_for_positions() -> None:
+    """Ten positions have shown it: more torque says no more, whatever the rated one is."""
+    record = sliding_record((60.0,) * 10, width=0.0)
+    place = 36.0 * record.history.cycle
+    angle = record.angle_arcsec + 6 * np.cos(np.radians(place - 50.0))
+    history = replace(record.history, input_angle_deg=place)
+    outcome, _ = diagnose_sweep(
+        replace(record, history=history, angle_arcsec=angle), replace(PREDICTION, rated_Nm=50.0)
+    )
+    assert [c.id for c in outcome.causes] == ["kinematic_error"]
+    after = outcome.next_measurement
+    assert after is not None
+    assert (after.vary, after.doing) == ("input_angle_deg", Doing("between_positions"))
+    said = why(after, "sweep")
+    assert "wave generator angles half way between those measured" in said
+    assert "larg" not in said

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,11 @@ import flexspline
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.gear import LOADING
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.summary import summary
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({"shaft.bolt_count": 0})
 LARGEST_Nm, HALF_GAP_arcsec, COMPLIANCE = 10.0, 29.32, 24.19
@@ -27,14 +31,32 @@ def chain() -> Chain:
     return chain_of(analysis_context(DESIGN))
 
 
+def twist_of(chain: Chain) -> Callable[[np.ndarray], np.ndarray]:
+    """The gear's angle beyond half its gap [arcsec], of a size of torque."""
+    grid = LARGEST_Nm * np.concatenate(
+        [[0.0], np.linspace(0.001, 0.2, 60), np.linspace(0.21, 1, 80)]
+    )
+    curve = chain.angles(grid[1:].tolist()) * ARCSEC_PER_RAD - HALF_GAP_arcsec
+    return lambda torque: np.interp(torque, grid, np.concatenate([[0.0], curve]))
+
+
 def measured(chain: Chain, times: float, spring: float, folder: Path) -> Diagnosis:
     """Four cycles of the gear's curve, its twist so many `times`, with a `spring` [arcsec per N·m] behind."""
+    twist = twist_of(chain)
+    return recorded(chain, lambda t: times * twist(t) + spring * t, folder)
+
+
+def recorded(
+    chain: Chain, twist: Callable[[np.ndarray], np.ndarray], folder: Path, friction_Nm: float = 0.0
+) -> Diagnosis:
+    """Four cycles of a twist [arcsec] of the size of torque at the teeth, behind the gap and friction."""
     share = np.concatenate([np.linspace(0, 1, 60), np.linspace(1, -1, 120), np.linspace(-1, 0, 60)])
     torque = LARGEST_Nm * np.tile(share, 4)
-    grid = LARGEST_Nm * np.linspace(0.001, 1, 60)
-    curve = chain.angles(grid.tolist()) * ARCSEC_PER_RAD
-    twist = np.interp(np.abs(torque), grid, curve) - HALF_GAP_arcsec
-    angle = np.sign(torque) * (HALF_GAP_arcsec + times * twist) + spring * torque
+    teeth, at = np.zeros(len(torque)), 0.0
+    for i, now in enumerate(torque):
+        at = min(max(at, now - friction_Nm), now + friction_Nm)
+        teeth[i] = at
+    angle = np.sign(teeth) * (HALF_GAP_arcsec + twist(np.abs(teeth)))
     angle += np.random.default_rng(5).normal(0, 0.4, len(torque))
     path = folder / "sweep.csv"
     text = "".join(
@@ -84,3 +106,62 @@ def test_the_error_before_is_that_of_the_simulation(chain: Chain, soft: Diagnosi
     grid = LARGEST_Nm * np.linspace(0.05, 0.98, 200)
     off = 2 / 3 * (chain.angles(grid.tolist()) * ARCSEC_PER_RAD - HALF_GAP_arcsec)
     assert found.outcome.gain.rmse_before == pytest.approx(np.sqrt((off**2).mean()), rel=0.02)
+
+
+def test_a_stiffer_gear_with_a_soft_wind_up_and_friction_is_all_three(
+    chain: Chain, tmp_path: Path
+) -> None:
+    """A wind-up of 14 arcsec each way, gone at a third of the torque, on a gear of 0.72 of the twist."""
+    own, friction = twist_of(chain), 0.25
+
+    def twist(torque: np.ndarray) -> np.ndarray:
+        return 0.72 * own(torque) + 14 * np.tanh(torque / 1.2)
+
+    found = recorded(chain, twist, tmp_path, friction)
+    causes = {c.id: c for c in found.causes}
+    assert {*causes} == {"series_compliance", "stiffness_hardening", "friction_hysteresis"}
+    assert all(not c.alternatives for c in found.causes)  # two branches are no spring's
+    stiffer = causes["series_compliance"]
+    assert stiffer.magnitude == pytest.approx(-28.0, abs=1.5)
+    assert causes["friction_hysteresis"].ahead_Nm == pytest.approx(friction, rel=0.1)
+    low, high = (np.array(ends) * LARGEST_Nm for ends in ((0.05, 0.2), (0.8, 1.0)))
+    softer = [
+        np.ptp(0.72 * COMPLIANCE * at + 14 * np.tanh(at / 1.2)) / np.ptp(at) for at in (low, high)
+    ]
+    hardening = causes["stiffness_hardening"]
+    assert hardening.magnitude == pytest.approx(softer[0] / softer[1], abs=0.02)
+    assert not found.outcome.unexplained
+
+
+@pytest.mark.parametrize("slope", [0.7, pytest.param(1.3, marks=pytest.mark.long)])
+def test_a_straight_line_has_lost_the_bend_and_keeps_its_slope(
+    slope: float, chain: Chain, tmp_path: Path
+) -> None:
+    """What no cause has a name for is said to be missing, and makes no cause of itself."""
+    found = recorded(chain, lambda t: slope * COMPLIANCE * t, tmp_path)
+    assert [c.id for c in found.causes] == ["series_compliance"]
+    assert found.causes[0].magnitude == pytest.approx(100 * (slope - 1), abs=1.0)
+    (lost,) = found.outcome.unexplained
+    assert lost.structure == (UnnamedForm("less_bend"),)
+    said = summary(found) + " ".join(notes(found))
+    assert "the same factor as its slope" not in said
+    # the simulated bend: what a straight line and a step at zero leave of the gear's curve
+    grid = np.linspace(0.05, 1, 200) * LARGEST_Nm
+    curve = twist_of(chain)(grid)
+    off = curve - np.polyval(np.polyfit(grid, curve, 1), grid)
+    assert lost.rms == pytest.approx(min(1.0, slope) * np.sqrt((off**2).mean()), rel=0.25)
+
+
+def test_a_curve_between_the_points_that_are_written_is_as_simulated(
+    chain: Chain, tmp_path: Path
+) -> None:
+    """Straight lines between the torques of the gear's own curve, and friction: no structure over torque."""
+    up = LARGEST_Nm * np.array(LOADING)
+    curve = chain.angles(up.tolist()) * ARCSEC_PER_RAD - HALF_GAP_arcsec
+    found = recorded(chain, lambda t: np.interp(t, up, curve), tmp_path, 0.2)
+    assert [c.id for c in found.causes] == ["friction_hysteresis"]
+    assert found.causes[0].ahead_Nm == pytest.approx(0.2, rel=0.05)
+    assert not found.outcome.unexplained
+    assert found.calibration is not None
+    assert found.calibration.compliance is not None
+    assert found.calibration.compliance.value == pytest.approx(COMPLIANCE, rel=0.005)
