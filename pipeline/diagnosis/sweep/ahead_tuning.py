@@ -39,10 +39,12 @@ AHEAD_STEP_SHARES = (1.0, 0.35, 0.1)
 
 @dataclass(frozen=True)
 class TunedAhead:
-    """The element and the standard deviation of its torque."""
+    """The element, the standard deviation of its torque, and the evidence beside the terms it was tuned with,
+    but for a constant."""
 
     element: Element
     torque_std_Nm: float
+    nats: float
 
 
 def ahead_element(friction_Nm: float, history: History) -> Element:
@@ -85,7 +87,7 @@ def tuned_ahead(
         std = float(np.sqrt(covariance[0, 0]) * np.exp(point[0]))
         if gained < ENOUGH_NATS:
             break
-    return TunedAhead(trial.element(point), std)
+    return TunedAhead(trial.element(point), std, now.value)
 
 
 @dataclass(frozen=True)
