@@ -104,7 +104,8 @@ def cause_title(cause: NamedCause) -> str:
     """What a person reads of a cause found."""
     more = []
     if cause.ahead_Nm:
-        more.append(f"{figures_text(cause.ahead_Nm)} N·m of friction ahead of the gap")
+        torque = plus_minus(cause.ahead_Nm, cause.ahead_std_Nm)
+        more.append(f"{torque} N·m of friction ahead of the gap")
     if cause.widest_arcsec is not None and _is_wider(cause):
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
     if cause.or_temperature:
