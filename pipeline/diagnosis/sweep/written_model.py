@@ -144,7 +144,7 @@ def _covariance(fit: SweepFit, model: ExtendedModel, explained: ExplainedSweep) 
 
 
 def beside_friction(fit: SweepFit, explained: ExplainedSweep) -> np.ndarray:
-    """(p + 1, p + 1) covariance of a fit's parameters and, the last, the torque of friction ahead of the teeth.
+    """(p + 1, p + 1) covariance of a fit's parameters and, last, the torque of friction ahead of the teeth.
 
     The fit m holds for the torque F that was found apart. With its deviation σ the covariance
     P of the fit becomes P + m′m′ᵀσ², and m′σ² with F: what friction ahead lacks others have more of.

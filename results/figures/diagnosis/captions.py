@@ -8,6 +8,10 @@ DRAWN_APART = """
         Where a channel has few values the branches are drawn apart: rising torque left of its value, falling
         torque right of it."""
 """Of every figure of residuals over channels: its points stand where no row was recorded."""
+LOOP_WIDTH = """
+        The size of the friction is the full width of its loop at zero torque. That is not the height of
+        its band: a soft wind-up behind friction ahead of the gap widens the loop there alone."""
+"""Of the causes' figure, where friction is one of them."""
 CAPTIONS = {
     "measured_and_predicted": """
         Above, the measured angle on the simulated line; below, their difference. A difference inside
@@ -20,7 +24,7 @@ CAPTIONS = {
         {DRAWN_APART}""",
     "causes": """
         Each part of the extended model alone. Pale: the measurement less all other parts. Dark: the
-        model. The pale points should scatter evenly about the dark ones.""",
+        model. The pale points should scatter evenly about the dark ones. {friction}""",
     "units": """
         How much of each cause each unit shows, with two standard deviations: 1 is the mean of all
         units or, where each was diagnosed by itself, the largest; 0 is nothing.""",
@@ -59,4 +63,4 @@ CAPTIONS = {
 
 def caption(name: str, **words: str) -> str:
     """The caption on one line, with its places filled."""
-    return " ".join(CAPTIONS[name].split()).format(**words)
+    return " ".join(CAPTIONS[name].format(**words).split())

@@ -100,7 +100,9 @@ def test_predictions_know_that_other_friction_makes_up_for_that_ahead() -> None:
     assert found.ahead is not None
     _, std = stated(found)
     history = found.prepared.rig.history
-    far = (np.abs(history.torque_Nm) > 10.0) & (history.cycle > 0)  # what friction remembers is gone
+    far = (np.abs(history.torque_Nm) > 10.0) & (
+        history.cycle > 0
+    )  # what friction remembers is gone
     p, n = len(found.identified.fit.posterior.mean) + 1, len(std)
     reading = std.min()
     of_fit = float(np.mean(std[far] ** 2 - reading**2))
