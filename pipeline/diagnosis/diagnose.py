@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.design import Design
@@ -36,6 +37,7 @@ from flexspline.pipeline.diagnosis.outcome import (
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep.calibration_doubt import calibration_of
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 from flexspline.pipeline.diagnosis.timeless import in_rows
 from flexspline.pipeline.stiffness_pair import StiffnessPair
@@ -79,21 +81,23 @@ class Diagnosis:
             return "sweep"
         return "end_points" if isinstance(self.measurement, EndPoints) else "specimens"
 
-    @property
+    @cached_property
     def calibration(self) -> Calibration | None:
         """Gap and compliance as the record has them; None of specimens, and of too few data."""
         if self.sweep is not None:
-            return self.sweep.explained.identified.fit.calibration
+            return calibration_of(self.sweep.explained)
         return self.end_points.calibration if self.end_points is not None else None
 
-    @property
+    @cached_property
     def calibrations(self) -> Mapping[str, Calibration]:
         """The same of each unit, where a sweep has several."""
         if self.sweep is None or not isinstance(self.measurement, Sweep):
             return {}
         explained = self.sweep.explained
-        names, fit = explained.prepared.sweep.units, explained.identified.fit
-        return {n: fit.calibration_of(u) for u, n in enumerate(names)} if len(names) > 1 else {}
+        names = explained.prepared.sweep.units
+        if len(names) < 2:
+            return {}
+        return {n: calibration_of(explained, u) for u, n in enumerate(names)}
 
     @property
     def verdict(self) -> Verdict:

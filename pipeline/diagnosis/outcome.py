@@ -38,6 +38,8 @@ class NamedCause:
     """Units under test that alone show it; empty: all do."""
     ahead_Nm: float = 0.0
     """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
+    ahead_std_Nm: float = 0.0
+    """Its standard deviation, the doubt of the law by which it slides included."""
     widest_arcsec: float | None = None
     """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
     or_temperature: bool = False

@@ -92,6 +92,7 @@ def _cause(cause: NamedCause) -> Record:
         record["units"] = list(cause.own_units)
     if cause.ahead_Nm:
         record["ahead_of_gap_Nm"] = cause.ahead_Nm
+        record["ahead_of_gap_std_Nm"] = cause.ahead_std_Nm
     if cause.widest_arcsec is not None:
         record["widest_loop_arcsec"] = cause.widest_arcsec
     return record

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import log
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.results.diagnosis.channels import channel_words
@@ -26,6 +27,8 @@ VERDICTS = {
 EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
+WIDE = " wide at T = 0"
+"""What the size of friction's loop is."""
 WIDER_RATIO = 1.1
 """Times the width at T = 0 that a friction loop is somewhere else, where it is said."""
 
@@ -64,13 +67,13 @@ def plus_minus(value: float, std: float) -> str:
 
 
 def magnitude_words(cause: NamedCause) -> str:
-    """Magnitude, deviation and unit; of a loop that is wider elsewhere, where it has that.
+    """Magnitude, deviation and unit; of friction, that it is the loop's full width at zero torque.
 
     A gear that is stiffer than simulated is told in stiffness; the magnitude of the record is of compliance.
     """
     if cause.is_surplus:
         return f"+{plus_minus(*cause.stiffer_pct)} %"
-    where = " at T = 0" if _is_wider(cause) else ""
+    where = WIDE if cause.id == FRICTION else ""
     size = plus_minus(cause.magnitude, cause.magnitude_std)
     unit = factor_words(cause) if cause.unit == "1" else cause.unit
     return f"{size} {unit}".rstrip() + where
@@ -104,7 +107,8 @@ def cause_title(cause: NamedCause) -> str:
     """What a person reads of a cause found."""
     more = []
     if cause.ahead_Nm:
-        more.append(f"{figures_text(cause.ahead_Nm)} N·m of friction ahead of the gap")
+        torque = plus_minus(cause.ahead_Nm, cause.ahead_std_Nm)
+        more.append(f"{torque} N·m of friction ahead of the gap")
     if cause.widest_arcsec is not None and _is_wider(cause):
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
     if cause.or_temperature:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -25,6 +26,8 @@ outside. A cubic and a quadratic hardening, each fitted to the other, differ by 
 and a half times the record's largest torque."""
 CARRIED_UNSURE = 0.03
 """Of the torque that friction ahead of the gap carries; by judgement, after made-up records."""
+CARRIED_STEP = 0.003
+"""Of that torque, for slopes."""
 MOST_PARAMETERS = 120
 """Of a covariance in a file: sixty thousand letters. Many units: a zero, a stiffness and a gap each."""
 
@@ -39,12 +42,14 @@ class PredictionUncertainty:
         rows used, and the rounding to an encoder's steps. torque_noise_Nm : of the torque reading.
     covariance : (p, p) of the parameters in the order of `parameter_columns`; (0, 0): too many to be kept.
     span : what was measured; predictions beyond are extrapolated.
+    crossing_Nm : over which the record's own rows lie in the gap or beyond its other side, beside the noise.
     """
 
     reading_arcsec: float
     torque_noise_Nm: float
     covariance: np.ndarray
     span: MeasuredSpan
+    crossing_Nm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,7 @@ def parameter_columns(
     """(n, p) what one of each parameter adds to the angle, of a true history and that at the teeth.
 
     In this order: the zeros; compliance; gap; each unit's own compliance and gap; the amplitudes of each
-    cause's elements. Of one ahead of the teeth, what it takes of the wind-up.
+    cause's elements. Of one ahead of the teeth, what it takes of the wind-up, and of all that acts behind it.
     """
     of_unit = [
         np.isin(true.unit, [u for u, given in enumerate(units) if given == name]).astype(float)
@@ -78,9 +83,34 @@ def parameter_columns(
             if at_teeth is read:
                 blocks.append(cause.columns(e.shape, true))
             else:
-                carried = at_teeth.torque_Nm - read.torque_Nm
-                blocks.append(model.compliance * carried[:, None] / e.amplitudes[0])
+                blocks.append(_per_Nm(model, cause_id, e, read, units)[:, None])
     return np.hstack(blocks)
+
+
+def _per_Nm(
+    model: ExtendedModel, cause_id: str, ahead: Element, read: History, units: tuple[str, ...]
+) -> np.ndarray:
+    """(n,) what 1 N·m more of friction ahead of the teeth adds to the angle, but for the gap's crossing.
+
+    Where the crossing moves past a row, what the wind-up adds alone.
+    """
+    step = CARRIED_STEP * ahead.amplitudes[0]
+    moved = [
+        replace(ahead, amplitudes=(ahead.amplitudes[0] + d,)) for d in (-step, step)
+    ]  # fmt: skip
+    ends = [_with_element(model, cause_id, ahead, e) for e in moved]
+    low, high = (m.at_teeth(read) for m in ends)
+    less, more = (
+        replace(m, gap_arcsec=0.0, own={u: (c, 0.0) for u, (c, _) in model.own.items()}).angle_of(read, units)
+        for m in ends
+    )  # fmt: skip
+    wind_up = model.compliance * (high.torque_Nm - low.torque_Nm)
+    return np.asarray(np.where(low.sign == high.sign, more - less, wind_up) / (2 * step))
+
+
+def _with_element(model: ExtendedModel, cause_id: str, old: Element, new: Element) -> ExtendedModel:
+    changed = tuple(new if e is old else e for e in model.elements[cause_id])
+    return replace(model, elements={**model.elements, cause_id: changed})
 
 
 def parameter_count(model: ExtendedModel) -> int:
@@ -103,19 +133,13 @@ def deviation_of(
     moves slower than measured the same share of what a rate dependence loses: friction loses nothing.
     Outside, all but these two grow in proportion to the distance.
     """
-    from scipy.special import ndtr
-
     variance = np.full(len(history), doubt.reading_arcsec**2)
     read = model.true_history(history)
     true = model.at_teeth(read)
     if len(doubt.covariance):
         columns = parameter_columns(model, read, true, units)
         variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
-    carried = true.torque_Nm - read.torque_Nm
-    unsure = np.hypot(doubt.torque_noise_Nm, CARRIED_UNSURE * np.abs(carried))
-    wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, LEAST_TORQUE_Nm))
-    # in the middle of the gap a reading is half of it off, beyond it all of it on the wrong side
-    variance += model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong)
+    variance += crossing_variance(model, read, true, unsure_of(model, doubt))
     smaller = np.zeros(len(history), bool)
     if FRICTION in model.elements:
         variance += memory_variance(model, read, doubt.span.torque_Nm)
@@ -132,6 +156,33 @@ def deviation_of(
         counts["slow_torque_rate"] = int((slower > 1).sum())
     std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * off) ** 2)
     return Deviation(std, {channel: n for channel, n in counts.items() if n})
+
+
+def unsure_of(model: ExtendedModel, doubt: PredictionUncertainty) -> float:
+    """Deviation [N·m] of where the gap is crossed, but for what the friction's law leaves open."""
+    friction = _friction_std_Nm(model, doubt.covariance) if len(doubt.covariance) else 0.0
+    return float(np.hypot(np.hypot(doubt.torque_noise_Nm, doubt.crossing_Nm), friction))
+
+
+def crossing_variance(
+    model: ExtendedModel, read: History, true: History, unsure_Nm: float
+) -> np.ndarray:
+    """(n,) mean square [arcsec²] by which rows are off whose side of the gap is not sure."""
+    from scipy.special import ndtr
+
+    carried = true.torque_Nm - read.torque_Nm
+    unsure = np.hypot(unsure_Nm, CARRIED_UNSURE * np.abs(carried))
+    wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, LEAST_TORQUE_Nm))
+    # in the middle of the gap a reading is half of it off, beyond it all of it on the wrong side
+    return np.asarray(model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong))
+
+
+def _friction_std_Nm(model: ExtendedModel, covariance: np.ndarray) -> float:
+    """Deviation of the torque that friction carries ahead of the teeth; 0 where there is none."""
+    shapes = [e.shape for of in model.elements.values() for e in of for _ in e.amplitudes]
+    variances = np.diag(covariance)[len(covariance) - len(shapes) :]
+    own = [v for shape, v in zip(shapes, variances, strict=True) if AHEAD in shape]
+    return float(np.sqrt(sum(own)))
 
 
 def _lost(model: ExtendedModel, slower: np.ndarray, true: History) -> np.ndarray:

@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty, par
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
     DOUBT,
+    DOUBT_OPTIONAL,
     MEASURED,
     MEASURED_OPTIONAL,
     Refuse,
@@ -25,6 +26,7 @@ ABOUT = """\
 [doubt]   # one standard deviation of a reading from its prediction
 reading_arcsec = {reading}   # largest of: rms error on rows not fitted, noise, an encoder's rounding
 torque_noise_Nm = {noise}
+crossing_Nm = {crossing}   # over which the record's rows lie in the gap or beyond it, beside the noise
 # covariance of zeros, compliance, gap, each unit's own compliance and gap, and all amplitudes below, in the
 # order of this file; lower triangle
 covariance = ["""
@@ -35,7 +37,12 @@ POSITIVE = ("smallest_loop_Nm", "rate_Nm_per_s", "slowest_rate_Nm_per_s")
 
 def doubt_lines(doubt: PredictionUncertainty) -> list[str]:
     """Lines of the table [doubt]."""
-    lines = [ABOUT.format(reading=repr(doubt.reading_arcsec), noise=repr(doubt.torque_noise_Nm))]
+    numbers = {
+        "reading": doubt.reading_arcsec,
+        "noise": doubt.torque_noise_Nm,
+        "crossing": doubt.crossing_Nm,
+    }
+    lines = [ABOUT.format(**{name: repr(value) for name, value in numbers.items()})]
     lines += [
         f"  [{', '.join(repr(float(v)) for v in row[: i + 1])}],"
         for i, row in enumerate(doubt.covariance)
@@ -63,11 +70,11 @@ def read_doubt(
     ------
     ModelFileError : unknown or missing keys, no covariance, or not the model's.
     """
-    check(table, DOUBT, {}, "[doubt]", refuse)
+    check(table, DOUBT, DOUBT_OPTIONAL, "[doubt]", refuse)
     measured = table["measured"]
     check(measured, MEASURED, MEASURED_OPTIONAL, "[doubt.measured]", refuse)
-    for key in ("reading_arcsec", "torque_noise_Nm"):
-        if table[key] < 0:
+    for key in ("reading_arcsec", "torque_noise_Nm", "crossing_Nm"):
+        if table.get(key, 0.0) < 0:
             raise refuse(f"{key} in [doubt] must not be negative")
     covariance = _covariance(table["covariance"], refuse)
     if len(covariance) not in (0, parameter_count(model)):
@@ -91,7 +98,11 @@ def read_doubt(
         slowest_rate_Nm_per_s=slowest,
     )
     return PredictionUncertainty(
-        float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span
+        float(table["reading_arcsec"]),
+        float(table["torque_noise_Nm"]),
+        covariance,
+        span,
+        float(table.get("crossing_Nm", 0.0)),
     )
 
 

@@ -27,7 +27,7 @@ ORIGIN: Keys = {"first_cycle": NUMBER, "first_time_s": NUMBER}
 CAUSE: Keys = {"id": (str,), "element": (list,)}
 CAUSE_OPTIONAL: Keys = {
     "title": (str,), "magnitude": NUMBER, "magnitude_std": NUMBER, "unit": (str,),
-    "alternatives": (list,),
+    "alternatives": (list,), "ahead_of_gap_std_Nm": NUMBER,
 }  # fmt: skip
 ELEMENT: Keys = {"amplitudes": (list,), "shape": (dict,)}
 GAIN: Keys = {
@@ -37,6 +37,7 @@ GAIN: Keys = {
 DOUBT: Keys = {
     "reading_arcsec": NUMBER, "torque_noise_Nm": NUMBER, "covariance": (list,), "measured": (dict,),
 }  # fmt: skip
+DOUBT_OPTIONAL: Keys = {"crossing_Nm": NUMBER}
 MEASURED: Keys = {"torque_Nm": (list,)}
 MEASURED_OPTIONAL: Keys = {
     "smallest_loop_Nm": NUMBER, "rate_Nm_per_s": NUMBER, "slowest_rate_Nm_per_s": NUMBER,

@@ -137,6 +137,11 @@ def _cause(cause_id: str, elements: Sequence[Element], found: NamedCause | None)
             f"unit = {quoted(found.unit)}" + ("   # a ratio" if found.unit == "1" else ""),
             f"alternatives = [{', '.join(map(quoted, found.alternatives))}]",
         ]
+        if found.ahead_Nm:
+            std = number(found.ahead_std_Nm)
+            lines.append(
+                f"ahead_of_gap_std_Nm = {std}   # of the torque taken off T ahead of the teeth"
+            )
     apart = [frozenset(s) for s in cause.searched_apart]
     for element in elements:
         ahead = "   # N·m, taken off T ahead of the teeth" * (frozenset(element.shape) in apart)

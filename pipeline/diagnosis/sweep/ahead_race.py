@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Element
-from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, LAWS
@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.ahead_tuning import TunedAhead, ahead_element, tuned_ahead
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.first_ahead import first_ahead
+from flexspline.pipeline.diagnosis.sweep.first_ahead import AheadGuess, first_ahead, frictions_alike
 from flexspline.pipeline.diagnosis.sweep.fit import LINEAR
 from flexspline.pipeline.diagnosis.sweep.offset_race import (
     gained,
@@ -70,7 +70,10 @@ FAR_PLACE_DEVIATIONS = 3.0
 half of what no row tells apart."""
 GUESS_LOG = 0.2
 """Of the first guess, which the step of the gap gives: on 14 records whose friction is known it was up to 9 %
-off. Where the shape of the loop says something farther away, other friction bends it."""
+off. Where the shape of the loop says something farther away, other friction bends it, unless the step fits
+as well there: between rows far apart it has no place of its own."""
+BEYOND_BOTH = 1.2
+"""Times the larger of the guess and what the loop's shape says: so far such places are looked for."""
 
 
 OTHER_FRICTION_LOG = 0.7
@@ -88,9 +91,7 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     if guess is None:
         return None
     try:
-        found, std = _raced_with(
-            prepared, ahead_element(guess.friction_Nm, history), guess.offset_Nm
-        )
+        found, std = _raced_with(prepared, guess)
     except TooFewRowsError:
         return None
     if not _seen(found):
@@ -132,23 +133,17 @@ def _unnamed_nats(found: ExplainedSweep) -> float:
     return best.log_evidence - search.candidate(named).log_evidence
 
 
-def _raced_with(
-    plain: PreparedSweep, element: Element, offset: float
-) -> tuple[ExplainedSweep, float]:
+def _raced_with(plain: PreparedSweep, guess: AheadGuess) -> tuple[ExplainedSweep, float]:
     """The race with friction, and the friction found again from it; with the deviation of its torque."""
-    guess = element
-    element = _alone(prepare(plain.sweep, plain.prediction, offset, guess)).element
-    if abs(float(np.log(element.amplitudes[0] / guess.amplitudes[0]))) > GUESS_LOG:
-        element = replace(element, amplitudes=guess.amplitudes)
+    element, offset = _begun(plain, guess), guess.offset_Nm
     seen: Crossing | None = None
     for _ in range(RACES_OF_BOTH if offset else AHEAD_RACES):
         explained = run_race(prepare(plain.sweep, plain.prediction, offset, element))
         now = explained.prepared
-        identified = explained.identified
         seen = seen or _crossing(
             explained
         )  # the first: later fits have bent towards their friction
-        found = tuned_ahead(now, identified.search.evidence, identified.best.terms, seen)
+        found = _tuned(explained, seen)
         if seen is not None:
             found = _held_at(found, seen)
         shifted = offset_of(explained)
@@ -163,6 +158,36 @@ def _raced_with(
     return explained, found.torque_std_Nm
 
 
+def _begun(plain: PreparedSweep, guess: AheadGuess) -> Element:
+    """What a race begins with: the friction that the loop's shape says, where the gap's step allows it."""
+    history, gap = true_history(plain.sweep), plain.prediction.gap_arcsec
+    first = ahead_element(guess.friction_Nm, history)
+    found = _alone(prepare(plain.sweep, plain.prediction, guess.offset_Nm, first)).element
+    friction = found.amplitudes[0]
+    if abs(float(np.log(friction / guess.friction_Nm))) < GUESS_LOG:
+        return found
+    most = BEYOND_BOTH * max(friction, guess.friction_Nm)
+    low, high = frictions_alike(history, plain.sweep.angle_arcsec, gap, guess, most)
+    inside = (f for f in (friction, guess.friction_Nm) if low <= f <= high)
+    return replace(found, amplitudes=(next(inside, (low + high) / 2),))
+
+
+def _tuned(explained: ExplainedSweep, seen: Crossing | None) -> TunedAhead:
+    """The friction tuned beside the race's best set, or beside less of it where that is likelier.
+
+    Friction behind the gap makes up for friction ahead of another torque or stiffness than the gear's: it
+    stays where it is needed beside the best friction ahead.
+    """
+    search, terms = explained.identified.search, explained.identified.best.terms
+    found = tuned_ahead(explained.prepared, search.evidence, terms, seen)
+    less = tuple(i for i in terms if search.evidence.terms[i].owner != FRICTION)
+    if less == terms:
+        return found
+    without = tuned_ahead(explained.prepared, search.evidence, less, seen)
+    more_needed = found.nats + search.prior(terms) - without.nats - search.prior(less)
+    return found if more_needed > 0 else without
+
+
 def _held_at(found: TunedAhead, seen: Crossing) -> TunedAhead:
     """Moved to where the gap is crossed, if it lies far from there.
 
@@ -171,7 +196,8 @@ def _held_at(found: TunedAhead, seen: Crossing) -> TunedAhead:
     friction = found.element.amplitudes[0]
     if abs(friction - seen.offset_Nm) < FAR_PLACE_DEVIATIONS * seen.std_Nm or seen.offset_Nm <= 0:
         return found
-    return TunedAhead(replace(found.element, amplitudes=(seen.offset_Nm,)), seen.std_Nm)
+    element = replace(found.element, amplitudes=(seen.offset_Nm,))
+    return replace(found, element=element, torque_std_Nm=seen.std_Nm)
 
 
 def _alone(prepared: PreparedSweep) -> TunedAhead:

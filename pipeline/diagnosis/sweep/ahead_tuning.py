@@ -41,10 +41,12 @@ AHEAD_STEP_SHARES = (1.0, 0.35, 0.1)
 
 @dataclass(frozen=True)
 class TunedAhead:
-    """The element and the standard deviation of its torque."""
+    """The element, the standard deviation of its torque, and the evidence beside the terms it was tuned with,
+    but for a constant."""
 
     element: Element
     torque_std_Nm: float
+    nats: float
 
 
 def ahead_element(friction_Nm: float, history: History) -> Element:
@@ -87,7 +89,25 @@ def tuned_ahead(
         std = float(np.sqrt(covariance[0, 0]) * np.exp(point[0]))
         if gained < ENOUGH_NATS:
             break
-    return TunedAhead(trial.element(point), std)
+    return TunedAhead(trial.element(point), std, now.value)
+
+
+def amplitudes_per_Nm(
+    prepared: PreparedSweep, evidence: GaussianEvidence, terms: Sequence[int]
+) -> np.ndarray:
+    """(p,) by how much each parameter of a fit changes with the friction's torque, each in its unit per N·m.
+
+    In the order of the fit's posterior, which holds for the torque that was found.
+    """
+    start = prepared.ahead
+    assert start is not None
+    point = np.log([start.amplitudes[0], start.shape[AHEAD]])
+    trial = _Trial(prepared, evidence, tuple(terms), None)
+    step = np.array([LOG_DIFFERENCES[0], 0.0])
+    change = trial.at(point + step).mean - trial.at(point - step).mean
+    scale = [evidence.terms[i].prior for i in terms]
+    change *= np.concatenate([np.ones(len(evidence.base_right)), *scale])
+    return np.asarray(change / (2 * LOG_DIFFERENCES[0] * start.amplitudes[0]))
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import steadied, stops
+from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SIGMAS
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm, torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
@@ -30,6 +31,8 @@ BOTH_NATS = 6.0
 """Of the friction alone over none, from which a shifted reading beside it is tried: each hides the other."""
 OFFSETS = 33
 """Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
+ALIKE_PLACES, ALIKE_NATS = 60, 1.0
+"""Frictions tried of those between which no row tells; two that are as near as this in nats fit alike."""
 NEAR_OFFSET_NATS = 3.0
 """Over the best of them, odds of 20 to 1: a race with either decides what is as near as that."""
 
@@ -144,3 +147,31 @@ def first_ahead(
     if nats < FIRST_NATS or over_offset < NEAR_OFFSET_NATS:
         return None
     return AheadGuess(float(friction), min(nats, over_offset))
+
+
+def frictions_alike(
+    history: History,
+    angle_arcsec: np.ndarray,
+    gap_arcsec: float,
+    guess: AheadGuess,
+    largest_Nm: float,
+) -> tuple[float, float]:
+    """Ends [N·m] of the frictions up to a largest one between which the gap's step fits alike.
+
+    The rows on either side of the crossing set them; the guess may lie anywhere between, and beside them, as
+    it does not look at rows next to the step. Here those are left out only that the torque's noise hides.
+    """
+    rows = len(history)
+    tried = np.linspace(0, largest_Nm, ALIKE_PLACES + 1)[1:]
+    carried = stops(history, steadied(history, deadband_Nm(history)), tried, np.zeros(ALIKE_PLACES))
+    noise_Nm = BAND_SIGMAS * torque_noise_Nm(history)
+    beyond = (history.torque_Nm - own - guess.offset_Nm for own in carried.T)
+    step = StepFit(looped_functions(history), angle_arcsec, gap_arcsec, noise_Nm)
+    misfits = [step.misfit(b) for b in beyond]
+    best, least = _least(misfits)
+    if not np.isfinite(least) or least <= 0:
+        return guess.friction_Nm, guess.friction_Nm
+    other = np.array([nats_over(m, least, rows) > ALIKE_NATS for m in misfits])
+    low = int(np.flatnonzero(np.r_[True, other[:best]])[-1])
+    high = best + int(np.flatnonzero(np.r_[other[best:], True])[0])
+    return float(tried[low]), float(tried[high - 1])

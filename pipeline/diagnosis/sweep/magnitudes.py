@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.decision import weights
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std, width_share_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
@@ -36,19 +36,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     """Magnitude of each named cause and its standard deviation, doubt of the shapes included."""
     evidence = identified.search.evidence
     names = identified.best.named(evidence)
-    alike = sorted(
-        {
-            c.terms: c
-            for c in (*identified.search.tried, identified.best)
-            if c.named(evidence) == names
-            and c.score <= identified.best.score  # others were refused
-        }.values(),
-        key=lambda c: -c.score,
-    )[:MOST_SHAPES]
-    nats = _shape_nats(identified)
-    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
-    weight = weights([c.score / nats for c in alike])
-    each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
+    fits, weight = fits_alike(identified)
+    each = [fit.magnitudes() for fit in fits]
     doubt = identified.size_doubt
     best = doubt.magnitude
     std = {}
@@ -69,6 +58,25 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         by_place = width_share_std(identified.fit) * best[FRICTION]
         std[FRICTION] = hypot(std[FRICTION], by_place)
     return best, std
+
+
+def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
+    """Fits of the sets of the same causes by any shapes, the best one's among them; how much each counts."""
+    evidence = identified.search.evidence
+    names = identified.best.named(evidence)
+    alike = sorted(
+        {
+            c.terms: c
+            for c in (*identified.search.tried, identified.best)
+            if c.named(evidence) == names
+            and c.score <= identified.best.score  # others were refused
+        }.values(),
+        key=lambda c: -c.score,
+    )[:MOST_SHAPES]
+    nats = _shape_nats(identified)
+    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
+    fits = [fit_regressors(evidence, c.terms) for c in alike]
+    return fits, weights([c.score / nats for c in alike])
 
 
 def _spring_std(identified: Identification, magnitude: float) -> float:

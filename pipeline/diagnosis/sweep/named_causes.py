@@ -70,6 +70,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
                 rms_arcsec=identified.rms[c],
                 own_units=tuple(units[u] for u in shares.own) if shares else (),
                 ahead_Nm=_ahead_Nm(explained, c),
+                ahead_std_Nm=_ahead_std_Nm(explained, c),
                 widest_arcsec=identified.fit.widest_loop_arcsec() if c == FRICTION else None,
                 or_temperature=c == DRIFT and may_follow_temperature(identified),
             )
@@ -132,12 +133,18 @@ def _std_ahead_arcsec(explained: ExplainedSweep) -> float:
     That of the law by which it slides, and that of its size, unless friction elements behind the gap are
     fitted beside it: they take up what it leaves.
     """
-    fit, ahead = explained.identified.fit, explained.ahead
-    if ahead is None:
+    fit = explained.identified.fit
+    own = _ahead_std_Nm(explained, FRICTION)
+    if FRICTION in explained.identified.best.named(fit.evidence):
+        own = LAW_UNSURE * _ahead_Nm(explained, FRICTION)
+    return 2 * fit.measured_rig().compliance * own
+
+
+def _ahead_std_Nm(explained: ExplainedSweep, cause: str) -> float:
+    """Deviation of that torque, by its fit and by the law by which it slides; 0 of other causes."""
+    if explained.ahead is None or cause != FRICTION:
         return 0.0
-    beside = FRICTION in explained.identified.best.named(fit.evidence)
-    of_law = LAW_UNSURE * _ahead_Nm(explained, FRICTION)
-    return 2 * fit.measured_rig().compliance * hypot(0.0 if beside else ahead.torque_std_Nm, of_law)
+    return hypot(explained.ahead.torque_std_Nm, LAW_UNSURE * _ahead_Nm(explained, cause))
 
 
 def _ahead_Nm(explained: ExplainedSweep, cause: str) -> float:

@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.encoder_step import ROUNDING_RATIO, encoder_step
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, PredictionUncertainty
+from flexspline.pipeline.diagnosis.model.doubt import (
+    MOST_PARAMETERS,
+    PredictionUncertainty,
+    crossing_variance,
+    unsure_of,
+)
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.sweep.ahead_tuning import amplitudes_per_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead
+from flexspline.pipeline.diagnosis.sweep.prepare import true_history
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+
+CROSSING_WIDTHS, NARROWEST_CROSSING = 24, 0.01
+"""Widths tried of the gap's crossing, up to the band of rows that no fit uses, and the least of that band."""
+SPREAD_NATS = 3.0
+"""Over no width, from which one is told: odds of 20 to 1."""
 
 
 @dataclass(frozen=True)
@@ -53,10 +66,34 @@ def written_model(
     doubt = PredictionUncertainty(
         of_row,
         torque_noise_Nm(sweep.history),
-        _covariance(fit, model, explained.ahead),
+        _covariance(fit, model, explained),
         span_of(sweep.history),
     )
-    return WrittenModel(model, doubt)
+    crossing = _crossing_Nm(fit, explained, model, doubt)
+    return WrittenModel(model, replace(doubt, crossing_Nm=crossing))
+
+
+def _crossing_Nm(
+    fit: SweepFit, explained: ExplainedSweep, model: ExtendedModel, doubt: PredictionUncertainty
+) -> float:
+    """Torque over which the gap's crossing is spread beyond what else makes a row's side of it unsure.
+
+    Soft ends and drag leave rows in the gap, where the model knows two sides alone. No fit uses the rows next
+    to the crossing; what they are off by gives this torque, the likeliest if it is clearly so.
+    """
+    prepared = explained.prepared
+    read, true = true_history(prepared.sweep, prepared.offset_Nm), prepared.rig.history
+    near = ~prepared.outlier & (np.abs(true.torque_Nm) <= prepared.band_Nm)
+    off = np.clip(np.abs(fit.residual_as_read()), 0.0, model.gap_arcsec)
+    widths = np.r_[0.0, np.geomspace(NARROWEST_CROSSING, 1.0, CROSSING_WIDTHS) * prepared.band_Nm]
+    nats = []
+    for width in widths:
+        unsure = unsure_of(model, replace(doubt, crossing_Nm=width))
+        variance = doubt.reading_arcsec**2 + crossing_variance(model, read, true, unsure)
+        each = -np.log(variance) / 2 - off**2 / (2 * variance)
+        nats.append(float(each[near].sum()))
+    best = int(np.argmax(nats))
+    return float(widths[best]) if nats[best] > nats[0] + SPREAD_NATS else 0.0
 
 
 def _refitted(evidence: GaussianEvidence, terms: tuple[int, ...]) -> SweepFit | None:
@@ -75,11 +112,11 @@ def _refitted(evidence: GaussianEvidence, terms: tuple[int, ...]) -> SweepFit | 
     return None
 
 
-def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -> np.ndarray:
+def _covariance(fit: SweepFit, model: ExtendedModel, explained: ExplainedSweep) -> np.ndarray:
     """(p, p) of the model's parameters in the order of `model.doubt.parameter_columns`.
 
-    An element that the fit did not estimate has zeros, but for the deviation of friction ahead of the teeth,
-    which was found apart. (0, 0) where there are too many.
+    An element that the fit did not estimate has zeros, but for friction ahead of the teeth, which was found
+    apart. (0, 0) where there are too many.
     """
     k = fit.units
     at = list(range(k + 2 + (2 * k if k > 1 else 0)))
@@ -91,6 +128,11 @@ def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -
             key = term.cause.id, tuple(sorted(term.shape.items()))
             fitted[key] = list(range(place, place + term.width))
         place += term.width
+    whole = fit.posterior.covariance
+    if explained.ahead is not None:
+        whole = beside_friction(fit, explained)
+        friction = model.elements[FRICTION][0]  # the only element that no term fits
+        fitted[FRICTION, tuple(sorted(friction.shape.items()))] = [len(whole) - 1]
     for cause_id, elements in model.elements.items():
         for e in elements:
             key = cause_id, tuple(sorted(e.shape.items()))
@@ -98,8 +140,18 @@ def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -
     if len(at) > MOST_PARAMETERS:
         return np.empty((0, 0))
     chosen, known = np.array(at), np.array(at) >= 0
-    found = np.where(np.outer(known, known), fit.posterior.covariance[np.ix_(chosen, chosen)], 0.0)
-    if ahead is not None:  # the first of the friction's elements, and the only one not fitted
-        place = int(np.flatnonzero(~known)[0])
-        found[place, place] = ahead.torque_std_Nm**2
-    return found
+    return np.where(np.outer(known, known), whole[np.ix_(chosen, chosen)], 0.0)
+
+
+def beside_friction(fit: SweepFit, explained: ExplainedSweep) -> np.ndarray:
+    """(p + 1, p + 1) covariance of a fit's parameters and, last, the torque of friction ahead of the teeth.
+
+    The fit m holds for the torque F that was found apart. With its deviation σ the covariance
+    P of the fit becomes P + m′m′ᵀσ², and m′σ² with F: what friction ahead lacks others have more of.
+    """
+    assert explained.ahead is not None
+    slopes = amplitudes_per_Nm(explained.prepared, fit.evidence, fit.posterior.terms)
+    with_own = np.r_[slopes, 1.0] * explained.ahead.torque_std_Nm
+    whole = np.outer(with_own, with_own)
+    whole[:-1, :-1] += fit.posterior.covariance
+    return whole

@@ -8,6 +8,10 @@ DRAWN_APART = """
         If a channel has few values, the branches are drawn apart: rising torque to the left of its value,
         falling torque to the right."""
 """Of every figure of residuals over channels: its points stand where no row was recorded."""
+LOOP_WIDTH = """
+        The size of the friction is the full width of its loop at zero torque. That is not the height of
+        its band: a soft wind-up behind friction ahead of the gap widens the loop there alone."""
+"""Of the causes' figure, where friction is one of them."""
 CAPTIONS = {
     "measured_and_predicted": """
         Above, the measured angle on the simulated line; below, their difference. A difference inside
@@ -20,7 +24,7 @@ CAPTIONS = {
         {DRAWN_APART}""",
     "causes": """
         Each part of the extended model alone. Pale: the measurement minus all other parts. Dark: the
-        model. The pale points should scatter evenly about the dark ones.""",
+        model. The pale points should scatter evenly about the dark ones. {friction}""",
     "units": """
         Share of each cause in each unit, with two standard deviations. 1 is the mean of all units or, if
         each unit was diagnosed alone, the largest value; 0 is no effect.""",
@@ -57,4 +61,4 @@ CAPTIONS = {
 
 def caption(name: str, **words: str) -> str:
     """The caption on one line, with its places filled."""
-    return " ".join(CAPTIONS[name].split()).format(**words)
+    return " ".join(CAPTIONS[name].format(**words).split())

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Effect
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import (
+    WIDE,
     cause_title,
     factor_words,
     magnitude_words,
@@ -78,10 +80,11 @@ def _channel_of(owner: str) -> str:
 def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
     known = known_causes()[cause.id]
     channel = shown.channel(known.shows_over)
-    factor = factor_words(cause)  # a line of its own: there is no room beside the number
+    # lines of their own: there is no room beside the number
+    beside = factor_words(cause) or (WIDE.strip() if cause.id == FRICTION else "")
     lines = [
-        magnitude_words(cause).removesuffix(f" {factor}"),
-        *([factor] if factor else []),
+        magnitude_words(cause).removesuffix(f" {beside}"),
+        *([beside] if beside else []),
         f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
         f"{sure_words(cause)}:",
         odds_words(cause.evidence_nats),

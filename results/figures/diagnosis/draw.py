@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
@@ -17,7 +18,7 @@ from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
 from flexspline.pipeline.second_process import results_of
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.figures.diagnosis.captions import caption
+from flexspline.results.figures.diagnosis.captions import LOOP_WIDTH, caption
 from flexspline.results.figures.diagnosis.contribution_parts import parts
 from flexspline.results.figures.diagnosis.contributions import write_contributions
 from flexspline.results.figures.diagnosis.end_points import (
@@ -93,7 +94,9 @@ def _sweep(shown: SweepPictureData, sheet: _FigureList) -> None:
         "residual_model", lambda path: write_channels(path, shown, shown.left, after, said), words
     )
     if parts(shown):
-        sheet.add("causes", lambda path: write_contributions(path, shown))
+        rubs = any(c.id == FRICTION for c in outcome.causes)
+        words = caption("causes", friction=LOOP_WIDTH if rubs else "")
+        sheet.add("causes", lambda path: write_contributions(path, shown), words)
     shares = shared_causes(shown)
     if shares:
         sheet.add("units", lambda path: write_units(path, shown, shares))

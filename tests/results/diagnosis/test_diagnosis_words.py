@@ -60,7 +60,7 @@ def test_a_stiffer_gear_is_no_part_left_out() -> None:
     stiffer = "gear stiffer than simulated, +58.2 ± 1.3 %"
     assert left_out([stiff]) == f"The simulation is too soft: {stiffer}."
     assert left_out([stiff, friction]) == (
-        "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec. "
+        "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec wide at T = 0. "
         f"The simulation is too soft: {stiffer}."
     )
 
@@ -163,5 +163,5 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     page = job_summary("diagnose", DESIGN, as_json(diagnosis_record(found)))["diagnosis"]
     loop, load = page["causes"]
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
-    assert loop["magnitude"] == "12.00 ± 0.50 arcsec at T = 0"
+    assert loop["magnitude"] == "12.00 ± 0.50 arcsec wide at T = 0"
     assert load["sure"] == "beyond doubt, size uncertain"

@@ -42,7 +42,7 @@ def test_an_ambiguous_summary_says_the_sure_causes_too(kind: str) -> None:
         in said
     )
     assert said.endswith(
-        " Also identified: friction hysteresis, 22.70 ± 0.90 arcsec (beyond doubt)."
+        " Also identified: friction hysteresis, 22.70 ± 0.90 arcsec wide at T = 0 (beyond doubt)."
     )
     alone = DiagnosisOutcome("ambiguous", (WEAR,))
     assert "Beside it" not in summary(Diagnosis(DESIGN, KINDS[kind], prediction, alone))

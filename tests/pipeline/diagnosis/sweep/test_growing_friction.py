@@ -76,4 +76,4 @@ def test_a_loop_in_proportion_to_load_has_a_doubt_where_it_is_closed() -> None:
     assert (
         cause.magnitude_std >= 2 * noise / near**0.5 * 0.8
     )  # the noise is estimated, to some 10 %
-    assert magnitude_words(cause).endswith("arcsec at T = 0")
+    assert magnitude_words(cause).endswith("arcsec wide at T = 0")
