@@ -131,7 +131,7 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     assert "gap of unit D" in said
     assert " 5.0 of its stated deviations" in said
     assert "unit A" not in said
-    (softer,) = [n for n in notes(found) if n.startswith("compliance of each unit")]
+    (softer,) = [n for n in notes(found) if n.startswith("difference of each unit's compliance")]
     each = {
         u: float(v.replace("\N{MINUS SIGN}", "-")) for u, v in findall(r"([A-D]) (\S+) %", softer)
     }

@@ -46,7 +46,7 @@ def test_a_clean_gear_read_slowly_is_consistent(count: int, tmp_path: Path) -> N
     found = diagnosed(RAMPS, every(count), tmp_path, 0.02)
     assert found.verdict == "consistent"
     held = ROWS - ROWS // count
-    assert any(f"{held} rows that repeat the angle" in n for n in notes(found))
+    assert any(f"{held} rows that repeat the previous" in n for n in notes(found))
     rows = data_record(found)["rows"]
     assert rows["left_out"]["held_reading"] == held
     assert rows["read"] == ROWS == rows["used"] + sum(rows["left_out"].values())
