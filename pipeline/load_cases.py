@@ -169,16 +169,27 @@ def _resting_on(flexspline: PartModel, held: Stiffness, tolerance: float) -> Sti
 
 
 def _resting_bodies(flexspline: PartModel) -> TwoBodies:
-    """Their ratios to K held are as fine as the enclosure asks; coarser where K held has far wider bounds."""
+    """Their ratios to K held are as fine as that of the part asks."""
     held, bodies = CASES["lobes"].bodies(flexspline), nested_bodies(flexspline.part)
-    near = held.enclosure().half_width <= FAR_HALF_WIDTHS * flexspline.tolerance
-    pct = bounds_pct(flexspline)
-    pct = pct if near else max(pct, FAR_BOUNDS_PCT)
+    doubt = _wanted_doubt(held.enclosure().half_width, flexspline)
 
     def solve(body: Part, own: Stiffness) -> Stiffness:
-        return _resting_on(body_model(flexspline, body, pct), own, own.half_width + pct / 100 / 2)
+        of_body = body_model(flexspline, body, bounds_pct(flexspline))
+        return _resting_on(of_body, own, own.half_width + doubt)
 
     return TwoBodies(solve(bodies.cut, held.cut), solve(bodies.whole, held.whole))
+
+
+def _wanted_doubt(held: float, flexspline: PartModel) -> float:
+    """Of each body's ratio, relative, by the half-width of the enclosure of K held, which it adds to.
+
+    Half of what is left of the tolerance. Where nothing is left, the part's ratio is between the bodies', and
+    is to be known as well as a body's K; where little of the enclosure is the bodies' bounds, less well.
+    """
+    least = bounds_pct(flexspline) / 100 / 2
+    if held > FAR_HALF_WIDTHS * flexspline.tolerance:
+        return max(least, FAR_BOUNDS_PCT / 100 / 2)
+    return max(least, (flexspline.tolerance - held) / 2)
 
 
 def _resting_with_holes(flexspline: PartModel) -> Stiffness:
