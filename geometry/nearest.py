@@ -11,7 +11,8 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 PAIRS_AT_ONCE = 4_000_000
 """Bounds the memory of the box test."""
 FACING = 0.5
-"""Least cosine between the normals of a facet and of the CAD triangle that it lies on."""
+"""Least cosine between the normals of a facet and of the CAD triangle that it lies on: within 60°, so that
+a facet at an edge is not taken for the face beside it."""
 
 
 def nearest_triangles(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FEWEST_BALLS, MOST_BALLS = 6, 200
 """With fewer the rim is no ellipse between them; thin section bearings of a metre have some 150."""
 USUAL_BALLS = 23
-"""Of the flexible bearings in most papers on such gears."""
+"""Of flexible bearings. Judgement: a usual number of such sets; where it matters the file states its own."""
 BALL_SHARE = 0.20
 """Ball's diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
 RACE_SHARE = 0.04

@@ -23,7 +23,7 @@ from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.solid_torsion import copies_in_rim
 
 LARGEST_ELLIPSE_STEP = radians(5)
-"""Of elements about the axis [rad]."""
+"""Of elements about the axis [rad]: with the two below, what the peak needs."""
 EDGE_WALLS, REACH_WALLS = 0.5, 1.5
 """Edges of the meridian beside the peak, and how far around it, in wall thicknesses.
 

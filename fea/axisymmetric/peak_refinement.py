@@ -24,7 +24,8 @@ from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.outline import Meridian
 
 PEAK_BULK = 0.5
-"""Share of the estimated energy error in the triangles refined, beside those of LOCAL_ERROR_SHARE."""
+"""Share of the estimated energy error in the triangles refined, beside those of LOCAL_ERROR_SHARE. Judgement:
+less than `lobes.LOBE_BULK`, as the others come on top."""
 LOCAL_ERROR_SHARE = 0.5
 """Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
 BORDER_SHARE = 0.25
@@ -34,7 +35,8 @@ as distance^-1/2 towards a singular point, to four times within 16 exclusion dis
 triangle exceeds by much. Of 60 random cups and hats, peaks came within 0.6 % of those to 0.1 %; with all
 borders fine within 0.75 %, in 1.4 times the time."""
 QUIET_ROUNDS = 2
-"""So many refinements in a row must leave the peak unchanged within the tolerance."""
+"""So many refinements in a row must leave the peak unchanged within the tolerance: one may
+have refined elsewhere only."""
 ENERGY_SHARE = 0.5
 """The estimated energy error must be below this share of the tolerance: a thick hat's peak was 1.4 % too high
 after two quiet rounds with 0.9 % of the energy in doubt."""

@@ -26,7 +26,8 @@ LEFT_AT_EDGE, LEFT_AWAY = 1 / 4, 1 / 64
 length (a change of patch, the slowest), and two or three parts stay there; elsewhere they fall with its
 fourth power, in eight parts: 1/128, and half of them are halved along fewer edges."""
 ROUND_SHARE = 0.04
-"""Of the elements, that a round halves at most."""
+"""Of the elements, that a round halves at most. Judgement: small rounds: each goes by the errors that the
+one before is expected to leave."""
 ELEMENTS_PER_HALVING = 7.0
 """More elements by one that is halved; its neighbours' parts come on top, so that the last round is small."""
 HALVING_ROUNDS = 40

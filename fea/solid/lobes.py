@@ -40,6 +40,8 @@ SOLID_BULK = 0.4
 """Share of that error whose triangles are refined each round: more rounds, fewer triangles too many."""
 TAIL = 1e-3
 """Of the energy: harmonics beyond play no part in where the mesh is refined."""
+STEP_TOLERANCE = 0.005
+"""Of K, to which LOBE_STEP belongs; the error of parabolas goes with the fourth power of the step."""
 NEXT_STEP, NEXT_SHARE = 0.7, 0.4
 """From mesh to mesh, where the first one did not do."""
 
@@ -48,7 +50,12 @@ def finer_mesh(
     wall_mm: float, radius_mm: float, material: Elastic, tolerance: float, number: int
 ) -> Finer:
     """What the mesh of that number (0, 1, …) of the case without support asks for."""
-    step = LOBE_STEP * sqrt(wall_mm / radius_mm) * (tolerance / 0.005) ** 0.25 * NEXT_STEP**number
+    step = (
+        LOBE_STEP
+        * sqrt(wall_mm / radius_mm)
+        * (tolerance / STEP_TOLERANCE) ** 0.25
+        * NEXT_STEP**number
+    )
     wanted = MERIDIAN_SHARE * tolerance * NEXT_SHARE**number
 
     def adapted(mesh: MeridianMesh) -> MeridianMesh:

@@ -26,7 +26,8 @@ ASTRAY_SHARE = 0.002
 ENVELOPES_PER_EDGE = 6
 """The envelope stays this much below the smallest edge: above it the mesher's surface has cracked."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
-"""Edge lengths of the attempts at a mesh, and whether they may be in unrolled space."""
+"""Edge lengths of the attempts at a mesh, over those asked for, and whether they may be in unrolled space:
+other edges make another mesh, and the last attempt does without the unrolling."""
 
 
 @dataclass(frozen=True)

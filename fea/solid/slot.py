@@ -20,12 +20,13 @@ from flexspline.geometry.outline import Meridian, SAME_mm, SAME_rad, Segment
 from flexspline.geometry.shaft_shape import Slot
 
 LEAST_STEPS = 2
-"""About the axis, from the slot's middle to its side."""
+"""About the axis, from the slot's middle to its side. Judgement: one element would span half of the floor."""
 STEP_OF_EDGE = 0.5
 """Step about the axis beside the slot, on the floor's corner, over the grading's largest edge: with that the
 slot's corners and the patch edges hold alike shares of the error on the example's shaft."""
 STEP_GROWTH = 1.6
-"""Of one step about the axis to the next, away from the slot's side."""
+"""Of one step about the axis to the next, away from the slot's side. Judgement: neighbours of more than twice
+the length make flat elements."""
 LARGEST_KEYED_STEP = radians(20)
 """Far from the slot, where the shaft is in plain torsion: 15° and 20° differ by 6e-5 of the example's K,
 and parabolas of 20° lose 2e-5 of a circle's area."""

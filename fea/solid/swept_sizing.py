@@ -16,7 +16,7 @@ from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
 
 PLAN_EDGE = 1.2
-"""Largest edge in the plan beside a hole, in hole radii."""
+"""Largest edge in the plan beside a hole, in hole radii: five go around it at least."""
 BISECTION_ROUNDS = 60
 """A round bisects what is too long; 28 parts of random designs took 7 at most."""
 MOST_ELEMENTS = 500_000

@@ -24,7 +24,7 @@ BEGINS = 0.5
 POLISH_FROM = 0.75
 """… and after which all are."""
 FIRST_STEP = 0.12
-"""Of a key's span, one standard deviation."""
+"""Of a key's span, one standard deviation. Judgement: an eighth of it."""
 SHORTER = 0.85
 """Per failure; with STEP_GROWTH it rests at one success in five or so (Rechenberg's 1/5 rule)."""
 STEP_GROWTH = 1.6
@@ -32,7 +32,7 @@ STEP_GROWTH = 1.6
 SHORTEST = 1e-4
 """Of a key's span: no drawing states a dimension finer."""
 CHANGES = 0.2
-"""How often a listed value is drawn again instead of kept."""
+"""How often a listed value is drawn again instead of kept. Judgement: most trials change numbers alone."""
 
 
 @dataclass(frozen=True)

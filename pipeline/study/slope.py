@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from flexspline.fea.types import MET, Shortfall
 from flexspline.geometry.part_name import PartName
 
+ALIKE = 0.01
+"""Slopes that differ by less, in K per 100 % of the dimension over K, are one: no decision hangs on it."""
+
 
 @dataclass(frozen=True)
 class Slope:
@@ -51,7 +54,7 @@ class Slope:
         """Whether both ways meet within the second's error and a percent of K per 100 %."""
         if self.held is None or self.solved is None:
             return None
-        slack = self.solved_error + 0.01 * self.K_Nm_per_rad / self.value_mm
+        slack = self.solved_error + ALIKE * self.K_Nm_per_rad / self.value_mm
         return abs(self.held - self.solved) <= slack
 
 

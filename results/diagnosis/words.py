@@ -25,7 +25,7 @@ VERDICTS = {
 }
 """Headings."""
 EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
-"""Nats of evidence, and how sure that is in words."""
+"""Nats of evidence, and how sure that is in words: odds of e to that power, 22 000, 150, 20 and 3 to 1."""
 
 WIDE = " wide at T = 0"
 """What the size of friction's loop is."""
