@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_remarks import LoadedLastPair
 from flexspline.results.figures.chart import Chart
@@ -34,7 +35,9 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
             axes.set_title(f"Force of a {what} in {newton}")
             axes.set_xlabel(where)
             most = int(np.abs(force).argmax())
-            words = f"largest: {force[most]:.3g} {newton} at {grouped(angle[most], 0)}°"
+            words = (
+                f"largest: {plain_number(force[most], 3)} {newton} at {grouped(angle[most], 0)}°"
+            )
             if last and i == 0 and most in (0, len(teeth) - 1):
                 words += ", last pair in the working depth"
             axes.annotate(  # beside the title, where no bar and no line is

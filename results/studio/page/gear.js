@@ -39,7 +39,7 @@ function whole({ line, marks }, pinned) {
   mark(0);
   chart.append(svg("text", { x: x(0) + 5, y: 16 }, "arcsec"));
   for (const [name, t] of marks) {
-    mark(t, `${name.replace("_", "")} ${t.toPrecision(3)}${name === "T_N" ? " N·m" : ""}`, name === "T_N" ? "end" : "middle");
+    mark(t, `${name.replace("_", "")} ${Number(t.toPrecision(3))}${name === "T_N" ? " N·m" : ""}`, name === "T_N" ? "end" : "middle");
   }
   if (pinned) curve(pinned, 1, "curve pinned");
   curve(line);
