@@ -200,7 +200,7 @@ def _first_spec(meshes: PartMeshes, tolerance: float) -> MeshSpec:
     coarse = meshes.coarsened(COARSE_FIRST_ELEMENTS)
     try:
         few = meshes.model.is_swept and meshes.meshed(coarse).mesh.elements < LEAST_COARSE_ELEMENTS
-    except SolidError:  # it comes again where the mesh is asked for
+    except (SolidError, OtherKindError):  # it comes again where the mesh is asked for
         few = False
     return meshes.coarsened(FIRST_ELEMENTS) if few else coarse
 

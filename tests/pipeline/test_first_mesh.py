@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from example_files import EXAMPLES
 
-from flexspline.fea.errors import MesherTimeError, TooManyElementsError
+from flexspline.fea.errors import MesherTimeError, SolidError, TooManyElementsError
 from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
@@ -25,7 +25,7 @@ from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import part_meshes, part_stiffness, parts, solid_torsion
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
+from flexspline.pipeline.part_meshes import MeshedPart, OtherKindError, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
@@ -62,6 +62,25 @@ def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.Monk
     assert first_elements(fine, tmp_path / "fine") == usual
     monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", usual - 1)
     assert first_elements(fine, tmp_path / "fine, coarser") < usual
+
+
+@pytest.mark.parametrize("fault", [SolidError("it fails a check"), OtherKindError("tetwild")])
+def test_a_coarse_first_mesh_that_cannot_be_made_is_no_end(
+    fault: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether it has too few elements is asked beforehand; the mesh itself is made, or fails, later."""
+    usual = first_elements(DESIGN, tmp_path / "usual")
+    make, asked = PartMeshes.meshed, []
+
+    def fails_once(meshes: PartMeshes, spec: MeshSpec) -> MeshedPart:
+        asked.append(spec)
+        if len(asked) == 1:
+            raise fault
+        return make(meshes, spec)
+
+    monkeypatch.setattr(PartMeshes, "meshed", fails_once)
+    assert first_elements(DESIGN, tmp_path / "fails once") == usual
+    assert len(asked) == 2
 
 
 @pytest.mark.parametrize(("about_axis", "tries"), [(True, 2), (False, 7)])
