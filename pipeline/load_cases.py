@@ -165,6 +165,7 @@ def _resting_on(flexspline: PartModel, held: Stiffness, tolerance: float) -> Sti
         lambda outline, deadline: contact_stiffness(outline, own, held, deadline, tolerance),
         held_from_Nm_per_rad=held.lower_Nm_per_rad,
         held_to_Nm_per_rad=held.upper_Nm_per_rad,
+        tolerance=tolerance,
     )
 
 
