@@ -19,8 +19,8 @@ from flexspline.fea.errors import (
 from flexspline.fea.scaled_estimate import ERROR_RATIOS
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
-from flexspline.fea.solid.load_cases import SolvedStiffness
 from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.solved import SolvedStiffness
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.superposition import WholeTurned, at_cuts
 from flexspline.fea.solid.tetwild import MESHER_SECONDS

@@ -8,8 +8,8 @@ import numpy as np
 
 from flexspline.fea.scaled_estimate import MeshResult
 from flexspline.fea.solid.layer_curving import LayeredMesh
-from flexspline.fea.solid.load_cases import SolvedCorrection
 from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.solved import SolvedCorrection
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, TetMesh
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -13,8 +12,8 @@ from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.errors import SolveError
 from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
-from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import Model, Supports
+from flexspline.fea.solid.solved import Solved, SolvedCorrection, SolvedStiffness
 from flexspline.fea.solid.solver import Solution
 from flexspline.fea.solid.superposition import (
     TurnedWalls,
@@ -26,7 +25,7 @@ from flexspline.fea.solid.superposition import (
 )
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
-from flexspline.fea.types import NMM_PER_NM, MeshLevel, TetMesh
+from flexspline.fea.types import NMM_PER_NM
 
 BALANCE_LIMIT = 1e-6
 """Energy and reaction give the same K to this; measured 1e-12 to 1e-9."""
@@ -42,43 +41,6 @@ TORQUE_OF_TRACTION = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
 """Of a tangential traction about z."""
 
 
-@dataclass(frozen=True)
-class Solved:
-    """A solved case: displacement (n, 3) Cartesian mm."""
-
-    mesh: TetMesh
-    displacement: np.ndarray
-    residual: float
-    dofs: int
-    solver: SolverKind
-
-
-@dataclass(frozen=True)
-class SolvedStiffness(Solved):
-    """A solved case that defines a stiffness of the whole part.
-
-    Attributes
-    ----------
-    K_energy : from the strain energy [N·m/rad].
-    K_check : the same from the reaction's torque, or from the work of the loads [N·m/rad].
-    """
-
-    K_energy: float
-    K_check: float
-
-    @property
-    def level(self) -> MeshLevel:
-        """What this mesh gave."""
-        return MeshLevel(
-            self.mesh.shortest_edge_mm,
-            self.mesh.elements,
-            self.dofs,
-            self.K_energy,
-            self.K_check,
-            self.residual,
-        )
-
-
 def torsion(model: Model, driven: str) -> SolvedStiffness:
     """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
 
@@ -88,38 +50,6 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
     """
     supports = _turned(model, driven)
     return _balanced(model, driven, supports.solve(np.zeros(model.matrix.shape[0])))
-
-
-@dataclass(frozen=True)
-class SolvedCorrection:
-    """v_h of `fea.solid.superposition`, (n, 3) Cartesian mm.
-
-    Attributes
-    ----------
-    lost : E + a(v_h, v_h) of the whole part [N·mm].
-    lost_by_work : the same with the work of the forces in place of the energy.
-    doubt : how far that moves, to first order, from u₀ on the coarser mesh at the cuts.
-    unknowns : of all waves together. residual : relative, of the worst solve.
-    """
-
-    mesh: TetMesh
-    displacement: np.ndarray
-    lost: float
-    lost_by_work: float
-    doubt: float
-    unknowns: int
-    residual: float
-
-    def level(self, K_Nm_per_rad: float, check_Nm_per_rad: float) -> MeshLevel:
-        """The mesh, with the K that it gives and the same by the work."""
-        return MeshLevel(
-            self.mesh.shortest_edge_mm,
-            self.mesh.elements,
-            self.unknowns,
-            K_Nm_per_rad,
-            check_Nm_per_rad,
-            self.residual,
-        )
 
 
 def torsion_and_correction(

@@ -23,10 +23,10 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.load_cases import SolvedStiffness
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.solved import SolvedStiffness
 from flexspline.fea.solid.torsion_field import CorrectionError, FullTorsion, TorsionSolver
 from flexspline.fea.types import Shortfall, Stiffness, TetMesh
 from flexspline.geometry.percent import percent

@@ -19,13 +19,9 @@ from flexspline.fea.solid.field_solver import (
     by_correction,
     error_of,
 )
-from flexspline.fea.solid.load_cases import (
-    SolvedStiffness,
-    torsion,
-    torsion_and_correction,
-    torsion_correction,
-)
+from flexspline.fea.solid.load_cases import torsion, torsion_and_correction, torsion_correction
 from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.solved import SolvedStiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import WholeTurned
 from flexspline.fea.types import NMM_PER_NM, Elastic

@@ -21,8 +21,9 @@ from example_files import EXAMPLES
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
 from flexspline.fea.solid.field_solver import FULL_SCALES
-from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, lobes, torsion
+from flexspline.fea.solid.load_cases import lobes, torsion
 from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.solved import Solved, SolvedStiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.unfold import unfolded

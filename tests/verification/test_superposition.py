@@ -30,12 +30,9 @@ from flexspline.fea.cylindrical import TANGENTIAL
 from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.field_solver import CORRECTION_SCALES, FULL_SCALES
-from flexspline.fea.solid.load_cases import (
-    SolvedCorrection,
-    SolvedStiffness,
-    torsion_and_correction,
-)
+from flexspline.fea.solid.load_cases import torsion_and_correction
 from flexspline.fea.solid.model import Model
+from flexspline.fea.solid.solved import SolvedCorrection, SolvedStiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.superposition import (
     Walls,

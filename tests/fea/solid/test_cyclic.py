@@ -23,9 +23,10 @@ from lobe_stiffness import lobe_stiffness
 
 from flexspline.fea.solid.cyclic import half_repeat, repeats_of
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, ellipse, lobes
+from flexspline.fea.solid.load_cases import ellipse, lobes
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.solved import Solved, SolvedStiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.unfold import unfolded

@@ -20,9 +20,10 @@ from flexspline.fea.solid import memory, twolevel
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.iteration import conjugate_gradients
-from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, ellipse, lobes, torsion
+from flexspline.fea.solid.load_cases import ellipse, lobes, torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.solved import Solved, SolvedStiffness
 from flexspline.fea.solid.solver import ITERATION_ENERGY, Case, solve
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.unfold import unfolded
