@@ -13,6 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "architecture.md"
 ROOMS = ("geometry", "fea", "pipeline", "results")
+SWEEP = "pipeline.diagnosis.sweep"
+"""The one package with folders of its own at the fourth level: it has a drawing of its own."""
 MARK = "<!-- drawn by docs/make_architecture.py: {} -->\n"
 
 
@@ -57,11 +59,14 @@ def between_rooms() -> str:
     return "\n".join(["```mermaid", "graph RL", *lines, "```", ""])
 
 
-def within(room: str) -> str:
-    """The packages of one room, and what each of them imports there."""
-    found = {pair for pair in arrows() if all(name.split(".")[0] == room for name in pair)}
+def within(package: str) -> str:
+    """The packages in one, to two levels below it, and what each of them imports there."""
+    levels = package.count(".") + 3
+    folded = {tuple(".".join(n.split(".")[:levels]) for n in pair) for pair in arrows()}
+    inside = [pair for pair in folded if all(f"{n}.".startswith(f"{package}.") for n in pair)]
+    found = {(a, b) for a, b in inside if a != b}
     names = sorted({name for pair in found for name in pair})
-    shown = [f'  {n.replace(".", "_")}["{n.removeprefix(room + ".")}"]' for n in names]
+    shown = [f'  {n.replace(".", "_")}["{n.removeprefix(package + ".")}"]' for n in names]
     lines = [f"  {a.replace('.', '_')} --> {b.replace('.', '_')}" for a, b in sorted(found)]
     return "\n".join(["```mermaid", "graph LR", *shown, *lines, "```", ""])
 
@@ -69,7 +74,7 @@ def within(room: str) -> str:
 def drawings() -> dict[str, str]:
     """Every drawing of the page, by the name in its mark."""
     made = {"rooms": between_rooms()}
-    return made | {room: within(room) for room in ROOMS if room != "geometry"}
+    return made | {name: within(name) for name in (*ROOMS[1:], SWEEP)}
 
 
 def written(page: str) -> str:

@@ -61,6 +61,33 @@ def test_imports_keep_to_the_house(path: Path) -> None:
         assert name != "tests"
 
 
+SWEEP = ROOT / "pipeline" / "diagnosis" / "sweep"
+STEPS = (
+    "nuisance",
+    "evidence",
+    "crossing",
+    "identification",
+    "race",
+    "magnitudes",
+    "residual",
+    "rig_faults",
+)
+"""Folders of a sweep's diagnosis: each imports from those before it, as its `__init__.py` says."""
+
+
+@pytest.mark.parametrize("folder", STEPS)
+def test_steps_of_a_sweep_import_one_way(folder: str) -> None:
+    later = STEPS[STEPS.index(folder) + 1 :]
+    for path in (SWEEP / folder).glob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        seen = set(re.findall(r"from flexspline\.pipeline\.diagnosis\.sweep\.(\w+)", text))
+        assert not seen & set(later), f"{path.name} must not know {seen & set(later)}"
+
+
+def test_every_folder_of_a_sweep_has_its_place() -> None:
+    assert {p.parent.name for p in SWEEP.glob("*/__init__.py")} == set(STEPS)
+
+
 def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
     bad = tmp_path / "bad.py"
     bad.write_text("def f():\n    from flexspline.results.cli import main\n    import cadquery\n")

@@ -1,19 +1,20 @@
 """From the evidence of explanations to a verdict: the rules that sweeps, end points and specimens share.
 
-Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
-(block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
-decided here. All log quantities are in nats. Which input of a gear explains its curve is decided in
-`whole_gear/identification.py`, by chi squares of inputs that have no prior; its two limits are here.
+Three engines give the evidence: `sweep/evidence/gaussian_evidence.py` (whitened linear model),
+`end_points/evidence.py` (block covariance) and `specimens/evidence.py` (Laplace's approximation).
+What follows from evidence is decided here. All log quantities are in nats. Which input of a gear
+explains its curve is decided in `whole_gear/identification.py`, by chi squares of inputs that have no prior;
+its two limits are here.
 
 Of a sweep `sweep/diagnose.py` may overrule it in five places, in this order; all but the first say `unknown`,
 by `overruled`:
 
 | where | what it sees |
 |---|---|
-| `sweep/limits.py`, `drowned` | noise or leaps above the simulated twist: `insufficient` |
-| `sweep/limits.py`, `broken_limit` | the best explanation breaks a physical limit, or the output slips |
-| `sweep/limits.py`, `slow_noise` | a `consistent` record whose slow noise hides an effect |
-| `sweep/backward.py`, `sweep/late_angle.py` | a torque or an angle that is read late |
+| `sweep/physical_limits.py`, `drowned` | noise or leaps above the simulated twist: `insufficient` |
+| `sweep/physical_limits.py`, `broken_limit` | the explanation breaks a physical limit, or the output slips |
+| `sweep/physical_limits.py`, `slow_noise` | a `consistent` record whose slow noise hides an effect |
+| `sweep/rig_faults/`: `backward_loops.py`, `late_angle.py` | a torque or an angle that is read late |
 | `sweep/held_out.py`, `refuted` | causes that make most levels of a channel, held out as wholes, worse |
 """
 
@@ -183,7 +184,8 @@ def chance(best: float, without: Iterable[float]) -> float:
 def is_significant(cause: NamedCause, times: float = 1.0) -> bool:
     """Whether a cause's size differs from none by more than `times` SIZE_KNOWN of its deviations.
 
-    Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation.
+    Sweeps ask it of each fit (`sweep/identification/significance.py`), end points and specimens of the
+    best explanation.
     """
     return differs_from_none(cause.id, cause.deviations / times)
 

@@ -6,10 +6,11 @@ the rest. Its steps are in `identification.py`.
 
 | step | sweep/ | end_points/ | specimens/ | whole_gear/ |
 |---|---|---|---|---|
-| hypotheses | `regressors.py` | `regressors.py` | `parameters.py` | `inputs.py` |
-| evidence of a set of them | `evidence.py` | `evidence.py` | `evidence.py` | `fitted_input.py` |
-| race of sets | `race.py` | `race.py` | `race.py` | `pairs.py` |
-| causes, rivals, verdict | `identification.py` | `decide.py` | `decide.py` | `identification.py` |
+| hypotheses | `evidence/regressors.py` | `regressors.py` | `parameters.py` | `inputs.py` |
+| evidence of a set of them | `evidence/` | `evidence.py` | `evidence.py` | `fitted_input.py` |
+| race of sets | `race/` | `race.py` | `race.py` | `pairs.py` |
+| causes, rivals | `identification/` | `decide.py` | `decide.py` | `identification.py` |
+| verdict | `verdict.py` | `decide.py` | `decide.py` | `identification.py` |
 | next measurement | `next_measurement.py` | the same | the same | `identification.py` |
 
 The rules of the verdict for the first three are in `decision.py`.
@@ -37,8 +38,8 @@ from flexspline.pipeline.diagnosis.outcome import (
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.calibration_doubt import calibration_of
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
 from flexspline.pipeline.diagnosis.timeless import in_rows
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 

@@ -40,7 +40,7 @@ from flexspline.pipeline.diagnosis.slope_hints import (
     unit_hints,
 )
 from flexspline.pipeline.diagnosis.structure import FarSlope, UnitSuspect
-from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
+from flexspline.pipeline.diagnosis.sweep.twist_ratio import SweepSize, sweep_size
 
 ABSURD_RATIO = 30.0
 """Times stiffer or softer than simulated, docs/contract.md, section 4."""

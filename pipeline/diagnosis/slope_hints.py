@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.measurement.units import (
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.structure import UnitSuspect
-from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
+from flexspline.pipeline.diagnosis.sweep.twist_ratio import SweepSize, sweep_size
 
 NEAR_FACTOR = 0.05
 """Of a unit's factor, relative: Young's modulus and a solver's mesh are known to some 2 % each."""

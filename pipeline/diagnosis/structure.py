@@ -152,8 +152,8 @@ class LateAngle:
 
     Attributes
     ----------
-    kind : of `sweep/crossing_forms.py`. rms_arcsec : of what the record's step of the gap is off a sharp one
-        at zero torque.
+    kind : of `sweep/rig_faults/crossing_forms.py`. rms_arcsec : of what the record's step of the gap is
+        off a sharp one at zero torque.
     """
 
     kind: str

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_off
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts
 from flexspline.results.diagnosis.reading import columns_record, form_record
 from flexspline.results.diagnosis.slope_words import slope_times

@@ -13,8 +13,11 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rounding import rounding_of_angle, rounding_of_torque
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
+    rounding_of_angle,
+    rounding_of_torque,
+)
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes

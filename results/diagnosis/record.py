@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
-from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
+from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.data_used import data_record

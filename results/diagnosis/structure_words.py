@@ -21,8 +21,8 @@ from flexspline.pipeline.diagnosis.structure import (
     Trace,
     UnnamedForm,
 )
-from flexspline.pipeline.diagnosis.sweep.crossing_forms import BOTH, DELAY, FILTER
-from flexspline.pipeline.diagnosis.sweep.slip import LOADED_SHARE
+from flexspline.pipeline.diagnosis.sweep.rig_faults.clamp_slip import LOADED_SHARE
+from flexspline.pipeline.diagnosis.sweep.rig_faults.crossing_forms import BOTH, DELAY, FILTER
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import title_of
 

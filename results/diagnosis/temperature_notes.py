@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
+from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import thermal_lag
 from flexspline.results.diagnosis.words import title_of
 
 

@@ -7,8 +7,8 @@ from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.words import cause_title, magnitude_words, title_of
 from flexspline.results.numbers import signed

@@ -11,7 +11,9 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER, RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate_on_ramps
+from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import (
+    at_one_rate_on_ramps,
+)
 from flexspline.results.diagnosis.channels import channel_words
 
 LEAST_OTHER_WAY = 0.05

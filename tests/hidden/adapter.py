@@ -43,7 +43,7 @@ def _off(found: Diagnosis, csv: Path) -> np.ndarray:
     """(n,) of a record measured again, in stated deviations."""
     from flexspline.pipeline.diagnosis.measurement.record import read_measurement
     from flexspline.pipeline.diagnosis.model.doubt import deviation_of
-    from flexspline.pipeline.diagnosis.sweep.prepare import true_history
+    from flexspline.pipeline.diagnosis.sweep.evidence.prepare import true_history
 
     sweep = read_measurement(csv)
     history = true_history(sweep)

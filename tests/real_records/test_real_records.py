@@ -16,7 +16,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.shortage import LeapingAngle
 from flexspline.pipeline.diagnosis.structure import Slip
-from flexspline.pipeline.diagnosis.sweep.slip import slip_of
+from flexspline.pipeline.diagnosis.sweep.rig_faults.clamp_slip import slip_of
 
 HERE = Path(__file__).parent
 CUP = EXAMPLES / "xb1-40.toml"

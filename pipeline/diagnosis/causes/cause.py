@@ -123,7 +123,8 @@ class Cause(ABC):
     """What that chart draws: the added angle, gap or compliance."""
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes` by steps of up to a factor
-    e^½ (`sweep/shape_tuning.py`): in a grid of them, neighbours need be no nearer than a factor of e."""
+    e^½ (`sweep/evidence/shape_tuning.py`): in a grid of them, neighbours need be no nearer than a factor
+    of e."""
     made_of: ClassVar[frozenset[str]] = frozenset()
     """Ids of other causes that all together can be this one: where they are found, it is asked for in the
     place of all of them."""

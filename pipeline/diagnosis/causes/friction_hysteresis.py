@@ -31,7 +31,8 @@ THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4)
 """Of the elements, as shares of the largest torque."""
 LARGEST_SHARP = 0.5
 """Of the largest torque: a single element of a larger threshold yields, after a turn there, only under torque
-of the other sign. A gear's friction does not; a lock that gives way does (`sweep/rig_nuisance.py`)."""
+of the other sign. A gear's friction does not; a lock that gives way does
+(`sweep/nuisance/rig_nuisance.py`)."""
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
 EVERYWHERE, GROWING, CLOSING = 0, 1, 2

@@ -17,7 +17,7 @@ class TorqueOffset(Cause):
     """The reading is `amplitude` [N·m] above the true torque: every other term sees the true one.
 
     On a straight branch that is a shift of the angle's zero, which is free; it shows where the torque
-    changes sign. Its amplitude is searched by `pipeline.diagnosis.sweep.torque_offset`, not linearly.
+    changes sign. Its amplitude is searched by `pipeline.diagnosis.sweep.crossing.gap_crossing`, not linearly.
     """
 
     id = OFFSET
@@ -26,8 +26,8 @@ class TorqueOffset(Cause):
     spread_share = 0.1
     """Of the largest torque: a cell not set to zero."""
     shape_doubt = 0.0
-    """It has one shape; the doubt of its place is `sweep/crossing_likelihood.py`'s: of 156 sizes one and two
-    deviations cover 67 and 98 %."""
+    """It has one shape; the doubt of its place is `sweep/crossing/crossing_likelihood.py`'s: of 156 sizes one
+    and two deviations cover 67 and 98 %."""
     reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
 
     def shapes(self, rig: FitContext) -> list[Shape]:

@@ -15,7 +15,8 @@ SLOW_RANGE_SHARE = 0.005
 """Of the largest torque, within which torque all but rests: a sixth of the shortest way between two breaks of
 an output that sticks, in made-up records (0.03)."""
 FEWEST_SLOW_ROWS = 4
-"""Rows of a slow run [1]: its mean is compared with those of its four parts (`sweep/stuck.py`)."""
+"""Rows of a slow run [1]: its mean is compared with those of its four parts
+(`sweep/residual/stick_slip_rests.py`)."""
 SLOWER_RATIO = 2.0
 """Times the median number of rows that torque needs for the span."""
 

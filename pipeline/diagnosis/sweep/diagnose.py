@@ -24,11 +24,11 @@ from flexspline.pipeline.diagnosis.outcome import (
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
-from flexspline.pipeline.diagnosis.sweep.judged import JudgedSweep, judge
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
-from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart, units_apart
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest
+from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart, units_apart
+from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, judge
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 
@@ -52,10 +52,10 @@ def diagnose_sweep(
     sweep: Sweep, prediction: Prediction
 ) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
     """The verdict on a sweep and what stands behind it; None where there are too few data."""
-    whole = judge(sweep, prediction)  # judged.py
+    whole = judge(sweep, prediction)  # verdict.py
     if not isinstance(whole, JudgedSweep):
         return _insufficient(whole), None
-    apart = units_apart(whole)  # units_apart.py
+    apart = units_apart(whole)  # separate_units.py
     shown = apart.shown if apart else whole
     explained, own = shown.explained, shown.decision
     ids = [c.id for c in own.causes]

@@ -13,19 +13,22 @@ from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import MissedLevel
-from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.prepare import true_history
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, with_tuned_shapes
-from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
-from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
-from flexspline.pipeline.diagnosis.sweep.splits import (
+from flexspline.pipeline.diagnosis.sweep.calibrated_residual import calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import true_history
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor
+from flexspline.pipeline.diagnosis.sweep.held_out_splits import (
     Split,
     affordable,
     between_others,
     whole_levels,
 )
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, with_tuned_shapes
+from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.second_process import results_of
 
 MOST_HELD_OUT_ROWS = 24_000

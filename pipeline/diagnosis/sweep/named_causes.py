@@ -18,15 +18,21 @@ from flexspline.pipeline.diagnosis.decision import (
     probability_of_gain,
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.dashpot import dashpot_explains
-from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
-from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
-from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.identification.dashpot import dashpot_explains
+from flexspline.pipeline.diagnosis.sweep.identification.drift_or_temperature import (
+    may_follow_temperature,
+)
+from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.identification.plausible_sets import explanations
+from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import (
+    LOOPS,
+    at_one_rate_on_ramps,
+    loop_tells,
+)
+from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import magnitudes
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.rig_faults.torque_zero_drift import zero_moves
 
 SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.6, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands

@@ -21,10 +21,10 @@ from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.rated_limit import WORTH_SHARE, within_rated
 from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.splits import rate_range, whole_levels
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors, model_of
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.held_out_splits import rate_range, whole_levels
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 
 PLANNED_CYCLE_ROWS = 64
 """Rows of one triangular cycle [1]: sixteen between zero and the largest torque draw its shape."""

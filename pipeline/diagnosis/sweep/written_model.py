@@ -22,11 +22,11 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
-from flexspline.pipeline.diagnosis.sweep.ahead_tuning import amplitudes_per_Nm
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
-from flexspline.pipeline.diagnosis.sweep.prepare import true_history
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors, model_of
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import true_history
+from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_tuning import amplitudes_per_Nm
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 
 CROSSING_WIDTHS, NARROWEST_CROSSING = 24, 0.01
 """Widths tried of the gap's crossing, up to the band of rows that no fit uses, and the least of that band."""

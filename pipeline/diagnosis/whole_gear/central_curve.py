@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
-from flexspline.pipeline.diagnosis.sweep.prepare import true_history
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import true_history
 
 OF_THE_CURVE = (CLEARANCE, SERIES, HARDENING)
 """Causes that bend or turn the curve itself."""

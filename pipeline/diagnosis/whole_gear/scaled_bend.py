@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SHARE
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED_SIGMAS
+from flexspline.pipeline.diagnosis.sweep.calibrated_residual import ALLOWED_SIGMAS
 
 LOOP_POWERS = (0, 1, 2)
 """Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""

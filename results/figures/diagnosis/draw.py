@@ -15,7 +15,10 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
+from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import (
+    STRUCTURE_P_VALUE,
+    ChannelTest,
+)
 from flexspline.pipeline.second_process import results_of
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.figures.diagnosis.captions import LOOP_WIDTH, caption

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import NamedCause, none_of
-from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
-from flexspline.pipeline.diagnosis.sweep.units_apart import UnitsApart
+from flexspline.pipeline.diagnosis.sweep.identification.unit_amplitudes import UnitAmplitudes
+from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.words import cause_title
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names

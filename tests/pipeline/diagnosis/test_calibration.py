@@ -19,13 +19,16 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.prediction import prediction_of
-from flexspline.pipeline.diagnosis.sweep.calibrated import (
+from flexspline.pipeline.diagnosis.sweep.calibrated_residual import (
     ALLOWED_SIGMAS,
     calibrated_residual,
     less_zero,
 )
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import design_matrix
 from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary

@@ -27,7 +27,7 @@ from flexspline.pipeline.diagnosis.measurement.record import (
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.shortage import Drowned
-from flexspline.pipeline.diagnosis.sweep.size import sweep_size
+from flexspline.pipeline.diagnosis.sweep.twist_ratio import sweep_size
 from flexspline.results.diagnosis.record import diagnosis_record
 from flexspline.results.diagnosis.summary import summary
 

@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
-from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
+from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.figures.diagnosis.draw import draw_figures, residual_words
 

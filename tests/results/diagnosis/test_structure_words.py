@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import LeapingAngle, Leaps
 from flexspline.pipeline.diagnosis.structure import FormKind, UnnamedForm
-from flexspline.pipeline.diagnosis.sweep.nuisance_terms import nuisance_terms
+from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import nuisance_terms
 from flexspline.pipeline.diagnosis.timeless import ROW, TIME, over_rows
 from flexspline.results.diagnosis.advice import DOING, doing_words
 from flexspline.results.diagnosis.shortage_words import shortage_words

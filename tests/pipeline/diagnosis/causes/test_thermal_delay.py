@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import ThermalClearance
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
-from flexspline.pipeline.diagnosis.sweep.channel_nuisance import over_temperature
+from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import over_temperature
 
 pytestmark = pytest.mark.usefixtures("causes_only")
 

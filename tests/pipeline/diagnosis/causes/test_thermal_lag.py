@@ -15,7 +15,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import ThermalClearance
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
+from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import thermal_lag
 from flexspline.results.diagnosis.notes import notes
 
 pytestmark = pytest.mark.usefixtures("causes_only")

@@ -10,8 +10,8 @@ import pytest
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_race import with_friction_ahead
 
 FRICTION_Nm, COMPLIANCE, GAP_ARCSEC = 0.17, 10.0, 60.0
 """Compliance in arcsec per N·m."""

@@ -11,9 +11,9 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.doubt import deviation_of
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_race import with_friction_ahead
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 COMPLIANCE, GAP_ARCSEC = 2.5, 45.0

@@ -13,9 +13,9 @@ from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.sweep import ahead_race
-from flexspline.pipeline.diagnosis.sweep.first_ahead import AheadGuess
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.crossing.friction_ahead_guess import AheadGuess
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.race import friction_ahead_race
 
 NOISE_Nm = 0.02
 HISTORY = replace(sweep(cycles=5, rows=400, hold=0), temperature_C=None, input_angle_deg=None)
@@ -44,10 +44,10 @@ def test_a_guess_that_ends_within_the_torque_s_noise_is_none(
 ) -> None:
     """However sure the guess was: rows within the noise lie on either side of the gap anyhow."""
     guess = AheadGuess(0.3 if seen else 0.02, nats=100.0)
-    monkeypatch.setattr(ahead_race, "first_ahead", lambda *_: guess)
+    monkeypatch.setattr(friction_ahead_race, "first_ahead", lambda *_: guess)
     prepared = prepare(record(friction), PREDICTION)
     assert torque_noise_Nm(prepared.rig.history) == pytest.approx(NOISE_Nm, rel=0.2)
-    found = ahead_race.with_friction_ahead(prepared)
+    found = friction_ahead_race.with_friction_ahead(prepared)
     assert (found is not None and found.ahead is not None) == seen
 
 

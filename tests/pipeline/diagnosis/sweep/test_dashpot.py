@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_rate, ramp_s
-from flexspline.pipeline.diagnosis.sweep.dashpot import dashpot_torque_Nm
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.identification.dashpot import dashpot_torque_Nm
 
 NOISE_ARCSEC = 0.2
 CYCLES, ROWS = 4, 240

@@ -7,9 +7,9 @@ import pytest
 from histories import PREDICTION
 from read_sweep import history_of, read, simulated, steps
 
+from flexspline.pipeline.diagnosis.sweep.crossing.gap_crossing import crossing
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.torque_offset import crossing
-from flexspline.pipeline.diagnosis.sweep.unexplained import COMES_BACK
+from flexspline.pipeline.diagnosis.sweep.residual.unexplained import COMES_BACK
 
 LARGEST = 20.0  # N·m
 GAP = PREDICTION.gap_arcsec

@@ -11,9 +11,12 @@ from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std, width_share_std
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
+    hardening_std,
+    width_share_std,
+)
 
 ROWS, PER_CYCLE, COMPLIANCE, LARGEST_Nm = 640, 160, 11.343, 10.0
 HARDENING, FRICTION = "stiffness_hardening", "friction_hysteresis"

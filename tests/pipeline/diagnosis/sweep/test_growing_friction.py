@@ -12,9 +12,9 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import GROWING
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
-from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.evidence.shape_tuning import tuned
 from flexspline.results.diagnosis.words import magnitude_words
 
 pytestmark = pytest.mark.usefixtures("causes_only")

@@ -16,16 +16,16 @@ from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
-from flexspline.pipeline.diagnosis.sweep.row_selection import settling
-from flexspline.pipeline.diagnosis.sweep.splits import (
+from flexspline.pipeline.diagnosis.sweep.held_out_splits import (
     Split,
     affordable,
     between_others,
     whole_levels,
 )
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 from flexspline.results.diagnosis.channels import left_out_words
 
 NOISE_ARCSEC = 0.5

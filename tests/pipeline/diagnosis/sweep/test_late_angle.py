@@ -18,10 +18,10 @@ from read_sweep import as_read
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.structure import LateAngle
-from flexspline.pipeline.diagnosis.sweep.crossing_forms import filtered_side
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep, prepare
+from flexspline.pipeline.diagnosis.sweep.rig_faults.crossing_forms import filtered_side
+from flexspline.pipeline.diagnosis.sweep.rig_faults.late_angle import late_angle_of
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.structure_words import structure_words
 

@@ -11,15 +11,18 @@ from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.leakage import (
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep, prepare
+from flexspline.pipeline.diagnosis.sweep.identification.leakage import (
     SHAPE_MISFIT,
     effect_size,
     leaked,
     lengths_beyond_calibration,
 )
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
 
 FRICTION, SPRING, GAP = "friction_hysteresis", "series_compliance", "clearance_offset"
 TURNING = replace(sweep(cycles=3, rows=400, hold=0), temperature_C=None, input_angle_deg=None)

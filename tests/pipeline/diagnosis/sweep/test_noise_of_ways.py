@@ -10,8 +10,8 @@ from read_sweep import as_read
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
 
 ROWS, DRAWN = 1600, 300
 

@@ -11,8 +11,8 @@ from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, run_race
 
 TURNING = replace(sweep(cycles=8, rows=200, hold=0), temperature_C=None, input_angle_deg=None)
 SPARSE = replace(sweep(cycles=8, rows=24, hold=24), temperature_C=None, input_angle_deg=None)

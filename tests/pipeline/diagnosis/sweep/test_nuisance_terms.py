@@ -10,7 +10,7 @@ from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NEW_SHARE, nuisance_terms
+from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NEW_SHARE, nuisance_terms
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 
 

@@ -14,9 +14,9 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Doing
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling, separations
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.held_out_splits import rate_range
 from flexspline.pipeline.diagnosis.sweep.next_measurement import plans
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.splits import rate_range
 from flexspline.results.diagnosis.advice import why
 
 pytestmark = pytest.mark.usefixtures("causes_only")

@@ -17,18 +17,21 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import MOST_FIT_ROWS, thinned
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.offset_race import (
+from flexspline.pipeline.diagnosis.sweep.crossing.gap_crossing import crossing
+from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Search
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.evidence.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.race.torque_offset_race import (
     OFFSET_LEAST,
     OFFSET_SURE,
 )
-from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
-from flexspline.pipeline.diagnosis.sweep.residual_tests import channel_tests
-from flexspline.pipeline.diagnosis.sweep.search import Search
-from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
-from flexspline.pipeline.diagnosis.sweep.torque_offset import crossing
+from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import channel_tests
 
 SIGMA = 0.5
 

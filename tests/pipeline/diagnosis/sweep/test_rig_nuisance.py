@@ -19,10 +19,10 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, jumps_of
-from flexspline.pipeline.diagnosis.sweep.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.race import run_race
-from flexspline.pipeline.diagnosis.sweep.rig_nuisance import YIELDS, giving_way, ringing
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.nuisance.rig_nuisance import YIELDS, giving_way, ringing
+from flexspline.pipeline.diagnosis.sweep.race.race import run_race
+from flexspline.pipeline.diagnosis.sweep.residual.stick_slip_skewness import Jumps, jumps_of
 
 HELD = replace(sweep(cycles=3, rows=400, hold=100), temperature_C=None, input_angle_deg=None)
 """0.02 N·m and 5 s a row: ramps of 100 rows, holds of 100."""

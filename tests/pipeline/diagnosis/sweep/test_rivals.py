@@ -15,12 +15,15 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
-from flexspline.pipeline.diagnosis.sweep.ahead_tuning import ahead_element
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.regressors import FrictionAhead, design_matrix
-from flexspline.pipeline.diagnosis.sweep.rivals import penalised, rivals_of
-from flexspline.pipeline.diagnosis.sweep.search import Search
+from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Search
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import FrictionAhead, design_matrix
+from flexspline.pipeline.diagnosis.sweep.identification.rivals import penalised, rivals_of
+from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_tuning import ahead_element
 
 STEEL_ALUMINIUM = 12e-6
 """/K by which they expand differently."""

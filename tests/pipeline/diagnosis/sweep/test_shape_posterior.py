@@ -10,11 +10,14 @@ from scipy.optimize import curve_fit
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence, with_shapes
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
-from flexspline.pipeline.diagnosis.sweep.shape_posterior import magnitude_stds
-from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    gaussian_evidence,
+    with_shapes,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.evidence.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.identification.shape_posterior import magnitude_stds
 
 DRIFT = "sensor_drift"
 HISTORY = sweep(cycles=3, rows=150, hold=0)

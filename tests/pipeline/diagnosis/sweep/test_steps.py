@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from source_tree import parsed
 
-from flexspline.pipeline.diagnosis.sweep import diagnose, judged
+from flexspline.pipeline.diagnosis.sweep import diagnose, verdict
 
 PACKAGE = "flexspline.pipeline.diagnosis."
-TEXTS = [Path(m.__file__).read_text(encoding="utf-8") for m in (diagnose, judged)]
+TEXTS = [Path(m.__file__).read_text(encoding="utf-8") for m in (diagnose, verdict)]
 
 
 def files(text: str) -> dict[str, str]:
@@ -40,7 +40,7 @@ def unlike(text: str) -> Iterator[str]:
     yield from said.values()
 
 
-@pytest.mark.parametrize("text", TEXTS, ids=["diagnose", "judged"])
+@pytest.mark.parametrize("text", TEXTS, ids=["diagnose", "verdict"])
 def test_each_step_names_its_file(text: str) -> None:
     assert list(unlike(text)) == []
 

@@ -10,7 +10,7 @@ from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.plausibility import slope_beyond
-from flexspline.pipeline.diagnosis.sweep.size import sweep_size
+from flexspline.pipeline.diagnosis.sweep.twist_ratio import sweep_size
 
 HELD = replace(sweep(cycles=4, rows=80, hold=150), temperature_C=None, input_angle_deg=None)
 """±2 N·m: ramps of 20 rows from zero, holds of 150: four rows of five lie in holds."""

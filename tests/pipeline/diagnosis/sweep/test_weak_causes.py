@@ -11,15 +11,18 @@ from histories import LARGEST, PREDICTION, sweep
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.identification import (
+from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Search
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    gaussian_evidence,
+)
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.identification.identification import (
     ALONE_NATS,
     STAND_IN_NATS,
     Identification,
     identify,
 )
-from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
-from flexspline.pipeline.diagnosis.sweep.search import Search
 
 GROWTH = {"wear", "thermal_clearance"}
 HISTORY = sweep(cycles=6, hold=0)

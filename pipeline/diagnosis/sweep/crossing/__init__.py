@@ -1,0 +1,1 @@
+"""Where the gap is crossed: a shifted torque reading, and first guesses of friction ahead of the teeth."""

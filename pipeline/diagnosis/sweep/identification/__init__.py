@@ -1,0 +1,1 @@
+"""From the best set to causes: significance, rivals, and what only looks like a cause."""

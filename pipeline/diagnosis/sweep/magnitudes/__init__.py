@@ -1,0 +1,1 @@
+"""Magnitudes of the named causes and of the calibration, with their standard deviations."""

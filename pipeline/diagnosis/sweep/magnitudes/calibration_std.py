@@ -1,0 +1,85 @@
+"""Compliance and gap as a record has them, with all that leaves them open: not the noise alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import hypot, sqrt
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR
+from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
+
+
+def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibration:
+    """What the units have in common, or one unit's own, by the best set.
+
+    The deviations have four parts: that of the posterior; that of the torque of friction ahead of the gap,
+    for which the posterior holds; the mean distance of other shapes' fits; and, of the compliance, what
+    friction takes at the ends of its loop, or the load at which a soft wind-up is as stiff as simulated: each
+    is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states.
+    """
+    fit = explained.identified.fit
+    found = _calibrated(fit, unit)
+    slope, gap = _beside_ahead(explained)
+    fits, weight = fits_alike(explained.identified)
+    others = [_calibrated(other, unit) for other in fits]
+    away = weight @ np.abs([o.gap_arcsec.value - found.gap_arcsec.value for o in others])
+    of_gap = hypot(found.gap_arcsec.std, gap, away)
+    found = replace(found, gap_arcsec=Estimate(found.gap_arcsec.value, of_gap))
+    if (own := found.compliance) is None:
+        return found
+    values = [own.value if o.compliance is None else o.compliance.value for o in others]
+    away = weight @ np.abs(np.array(values) - own.value)
+    most = max(own.std, fit.rig.prediction.compliance_std)
+    std = min(hypot(own.std, slope, away, _untold_std(fit, own.value)), most)
+    return replace(found, compliance=Estimate(own.value, std))
+
+
+def _calibrated(fit: SweepFit, unit: int | None) -> Calibration:
+    return fit.calibration if unit is None else fit.calibration_of(unit)
+
+
+def _beside_ahead(explained: ExplainedSweep) -> tuple[float, float]:
+    """Deviations of common compliance and gap by that of the torque of friction ahead of the gap."""
+    if explained.ahead is None:
+        return 0.0, 0.0
+    fit = explained.identified.fit
+    with_friction = np.diag(beside_friction(fit, explained))[:-1] - np.diag(
+        fit.posterior.covariance
+    )
+    slope, gap = with_friction[fit.units : fit.units + 2]
+    return sqrt(max(slope, 0.0)), sqrt(max(gap, 0.0))
+
+
+def _untold_std(fit: SweepFit, compliance: float) -> float:
+    """Of a compliance, by shapes that differ in it alone; each counts as the design's stated doubt has it."""
+    prediction = fit.rig.prediction
+    total = 0.0
+    for changes in _changes(fit):
+        off = (np.array([0.0, *changes]) + compliance - prediction.compliance) / np.maximum(
+            prediction.compliance_std, LEAST_PRIOR
+        )
+        likely = np.exp((off[0] ** 2 - off[1:] ** 2) / 2).clip(max=1.0)
+        total += float(likely @ np.square(changes)) / (1 + float(likely.sum()))
+    return sqrt(total)
+
+
+def _changes(fit: SweepFit) -> Iterator[np.ndarray]:
+    """Of each term that has such shapes, by how much each changes the compliance [arcsec per N·m]."""
+    history = fit.rig.history
+    torque = history.torque_Nm
+    for term, amplitudes in zip(
+        fit.regressors, fit.posterior.amplitudes(fit.evidence), strict=True
+    ):
+        others = term.cause.but_for_a_spring(term.shape, fit.rig) if term.cause else []
+        if term.cause is None or not others:
+            continue
+        mine = term.cause.columns(term.shape, history) @ amplitudes
+        left = [mine - term.cause.columns(o, history) @ amplitudes for o in others]
+        yield np.array([float(torque @ own) / float(torque @ torque) for own in left])

@@ -1,0 +1,130 @@
+"""Magnitudes of what is named, and how far each may be off: all sets that explain the record count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
+from flexspline.pipeline.diagnosis.decision import weights
+from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+    shape_key,
+)
+from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
+    hardening_std,
+    width_share_std,
+)
+from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
+
+SHAPE_NATS = 3.0
+"""Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
+the gear's."""
+FEWEST_WEIGHT_LOGS = 6.0
+"""Sets that count by less than e^−6 = 0.25 % are left out."""
+NEAR_ZERO = 0.15
+"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
+MOST_SHAPES = 24
+"""Of these sets at most, the likeliest: each is fitted again for its deviation."""
+
+
+def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
+    """Magnitude of each named cause and its standard deviation, doubt of the shapes included."""
+    evidence = identified.search.evidence
+    names = identified.best.named(evidence)
+    fits, weight = fits_alike(identified)
+    each = [fit.magnitudes() for fit in fits]
+    doubt = identified.size_doubt
+    best = doubt.magnitude
+    std = {}
+    for cause in identified.named:
+        values = np.array([m[cause] for m in each])
+        # their mean distance: one set far off does not make it as wide
+        spread = float(weight @ np.abs(values - best[cause]))
+        std[cause] = hypot(doubt.std[cause], spread)
+    if HARDENING in std:
+        std[HARDENING] = hypot(std[HARDENING], hardening_std(identified.fit))
+    if THERMAL in std:
+        std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
+    if SERIES in std:
+        std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
+    # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
+    if FRICTION in std and FRICTION in names:
+        std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
+        by_place = width_share_std(identified.fit) * best[FRICTION]
+        std[FRICTION] = hypot(std[FRICTION], by_place)
+    return best, std
+
+
+def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
+    """Fits of the sets of the same causes by any shapes, the best one's among them; how much each counts."""
+    evidence = identified.search.evidence
+    names = identified.best.named(evidence)
+    alike = sorted(
+        {
+            c.terms: c
+            for c in (*identified.search.tried, identified.best)
+            if c.named(evidence) == names
+            and c.score <= identified.best.score  # others were refused
+        }.values(),
+        key=lambda c: -c.score,
+    )[:MOST_SHAPES]
+    nats = _shape_nats(identified)
+    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
+    fits = [fit_regressors(evidence, c.terms) for c in alike]
+    return fits, weights([c.score / nats for c in alike])
+
+
+def _spring_std(identified: Identification, magnitude: float) -> float:
+    """Of a spring's size, by laws of other causes that fit as well and leave it another one.
+
+    Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
+    says: they count alike. What the prior says of larger springs is no evidence of the smaller.
+    """
+    evidence, best = identified.search.evidence, identified.best
+    others = list(_but_for_a_spring(evidence, best))
+    sizes = [fit_regressors(evidence, terms).magnitudes()[SERIES] for terms in others]
+    off = np.array(sizes) - magnitude
+    return float(np.sqrt((off**2).sum() / (1 + len(off))))
+
+
+def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
+    """Sets with a term's shape replaced by one that leaves the spring another size."""
+    at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
+    for place, i in enumerate(best.terms):
+        term = evidence.terms[i]
+        rig = evidence.columns.rig
+        for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
+            other = at.get(shape_key(term.owner, shape))
+            if other is not None:
+                yield (*best.terms[:place], other, *best.terms[place + 1 :])
+
+
+def _width_std_arcsec(evidence: GaussianEvidence) -> float:
+    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
+    history = evidence.columns.rig.history
+    near = np.abs(history.torque_Nm) < NEAR_ZERO * history.largest_Nm
+    rows = max(1, int((near & evidence.kept).sum()))
+    return 2 * evidence.noise.std_arcsec / rows**0.5
+
+
+def _shape_nats(identified: Identification) -> float:
+    """Nats by which one set of shapes is better than another, though neither is the gear's.
+
+    What a law leaves of its best shape, a share s of its length L in the noise's deviations, is worth
+    (s·L)²/2.
+    """
+    doubts = [
+        known_causes()[c].shape_doubt * effect_size(identified.fit, c) for c in identified.named
+    ]
+    return max(SHAPE_NATS, float(np.square(doubts).sum()) / 2)

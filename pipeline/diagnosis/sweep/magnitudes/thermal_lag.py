@@ -1,0 +1,69 @@
+"""Whether the gap follows the temperature late, and what that leaves open of its size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import COLDER, STAGES, THERMAL, WARMER
+from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE
+from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
+from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.magnitudes.between_sets_std import std_over
+
+
+@dataclass(frozen=True)
+class ThermalLag:
+    """Lags that stand in the model.
+
+    Attributes
+    ----------
+    lags_s : of each element that has one, shortest first. stages : of thermal masses, one behind the other.
+    warmer_K : by which the gear was warmer than the sensor when the record began; negative: colder.
+    shown : whether the record is explained much worse without a lag.
+    """
+
+    lags_s: tuple[float, ...]
+    stages: int
+    warmer_K: float
+    shown: bool
+
+
+def thermal_lag(identified: Identification) -> ThermalLag | None:
+    """The lag of the gap behind the temperature; None where the model has none."""
+    if THERMAL not in identified.named:
+        return None
+    shapes = [e.shape for e in identified.fit.elements()[THERMAL] if e.shape["lag_s"] > 0]
+    if not shapes:
+        return None
+    without = [c for c in _other_sets(identified) if _is_at_once(identified, c)]
+    shown = all(identified.best.score - c.score > RIVAL_EVIDENCE for c in without)
+    return ThermalLag(
+        tuple(sorted(s["lag_s"] for s in shapes)),
+        int(max(s.get(STAGES, 1) for s in shapes)),
+        sum(s.get(WARMER, 0.0) - s.get(COLDER, 0.0) for s in shapes),
+        shown,
+    )
+
+
+def lag_std(identified: Identification, magnitude: float) -> float:
+    """Of the size of a gap that follows temperature, by how far other lags, and none, leave it another one.
+
+    Each counts by its score, over all that were tried of one element, the rest of the best set as it is.
+    """
+    return std_over(identified, _other_sets(identified), THERMAL, magnitude)
+
+
+def _other_sets(identified: Identification) -> Iterator[Candidate]:
+    """The best set with another element in the place of all that follow temperature, each that was evaluated
+    before any was tuned."""
+    evidence, terms = identified.search.evidence, identified.best.terms
+    rest = tuple(i for i in terms if evidence.terms[i].owner != THERMAL)
+    for i, term in enumerate(evidence.terms[: evidence.columns.tuned_from]):
+        if term.owner == THERMAL and i not in terms:
+            yield identified.search.candidate((*rest, i))
+
+
+def _is_at_once(identified: Identification, c: Candidate) -> bool:
+    terms = identified.search.evidence.terms
+    return all(terms[i].shape["lag_s"] == 0 for i in c.terms if terms[i].owner == THERMAL)

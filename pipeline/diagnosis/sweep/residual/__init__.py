@@ -1,0 +1,1 @@
+"""What the best explanation leaves: tests of the residual, stick-slip, lack of fit, rounding."""

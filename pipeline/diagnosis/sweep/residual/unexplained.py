@@ -1,0 +1,71 @@
+"""What the best set leaves without a name: nuisance terms, minor causes, and structure in the residual."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from math import hypot
+
+from flexspline.pipeline.diagnosis.outcome import Unexplained
+from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.identification.gear_curve_error import RIPPLED
+from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import (
+    STRUCTURE_P_VALUE,
+    ChannelTest,
+)
+from flexspline.pipeline.diagnosis.sweep.residual.stick_slip_skewness import Jumps
+
+NUISANCE_P = 1e-6
+"""Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
+JUMPS = (UnnamedForm("jumps"),)
+COMES_BACK = (UnnamedForm("comes_back"),)
+REMAINDER = (UnnamedForm("remainder"),)
+
+
+def made_by_rounding(identified: Identification, rounding_arcsec: float) -> frozenset[str]:
+    """Owners of the best set's ripples, where they are together no more than rounding leaves.
+
+    A saw-tooth over the encoder's steps is a function of the angle.
+    """
+    ripples = [owner for owner in RIPPLED if owner in identified.rms]
+    together = hypot(*(identified.rms[owner] for owner in ripples))
+    return frozenset(ripples if together < rounding_arcsec else ())
+
+
+def unexplained_of(
+    identified: Identification,
+    tests: Sequence[ChannelTest],
+    jumps: Jumps | None = None,
+    again: ChannelTest | None = None,
+    told: Collection[str] = (),
+    units: Sequence[str] = (),
+) -> tuple[Unexplained, ...]:
+    """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
+
+    `told` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
+    """
+    found = []
+    regressors = [identified.search.evidence.terms[i] for i in identified.best.terms]
+    for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
+        rms = identified.rms[owner]
+        if owner.startswith("?"):
+            forms = dict.fromkeys(r.form for r in regressors if r.owner == owner and r.form)
+            named = tuple(_with_name(form, units) for form in forms)
+            found.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
+        else:
+            found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
+    if jumps is not None:
+        found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPS))
+    if again is not None:
+        found.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
+    said = {u.channel for u in found}
+    for t in sorted(tests, key=lambda t: t.p_value):
+        if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:
+            found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
+    return tuple(found)
+
+
+def _with_name(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:
+    """A form that one unit alone has, with that unit's name."""
+    return replace(form, name=units[form.number - 1]) if form.number and units else form
