@@ -8,6 +8,7 @@ from typing import Any
 from flexspline.geometry.design import Design
 from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import Range
+from flexspline.geometry.shapes import KINDS, SHAPES
 from flexspline.geometry.toml_text import quoted
 
 Location = tuple[str | int, ...]
@@ -42,6 +43,9 @@ def key_words(key: str) -> tuple[str, str]:
 def json_schema() -> SchemaNode:
     """JSON Schema (2020-12) of the design file; editors complete and check with it."""
     schema = Design.model_json_schema()
+    for shape in SHAPES.values():
+        kind = schema["$defs"][shape.__name__]["properties"]["kind"]
+        kind["description"] = joined(KINDS, "or")
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **schema,

@@ -15,7 +15,7 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.first_values import LESS_BENT, MODELS, TomlTable, first_values
+from flexspline.geometry.first_values import first_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.percent import percent
 from flexspline.geometry.ranges import Range
@@ -26,7 +26,9 @@ from flexspline.geometry.rated import (
     rated_in_proportion,
 )
 from flexspline.geometry.schema import Location
+from flexspline.geometry.shapes import SHAPES
 from flexspline.geometry.template import text_of
+from flexspline.geometry.toml_text import TomlTable
 from flexspline.geometry.wave_generator import flexible_bearing
 
 PITCH_RADIUS_PER_SIZE_mm = 1.27
@@ -38,9 +40,6 @@ RATIOS = Range(30, 320)
 WALL_SHARE = 0.0123
 """Of the pitch radius. The tube then buckles at the torque that a catalogue gives for it: its 15 sizes
 ask for 0.0117 to 0.0127, at all ratios alike (docs/whole-gear.md)."""
-FAR_BENT = {"cup": 90, "hat": 144}
-"""By kind. Stress on the wave generator goes with the stroke: at ratio 100 it is 448 MPa in cups and 718 in
-hats; the first designs' steel endures 500."""
 LENGTH_DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
 
@@ -59,15 +58,16 @@ def sized_template(kind: str, size: float, ratio: int, rated_Nm: float | None = 
     DesignError : no such kind, size or ratio; a rated torque that no gear of that size has.
     """
     values, why = sized_values(kind, size, ratio, rated_Nm)
+    first = SHAPES[kind].first
     title = (
         f"# A strain wave gear with a {kind}, size {size:g}, ratio {ratio}.\n"
         "# Catalogues do not give inner dimensions: "
-        f'what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
+        f'what is marked "assumed" is a proportion of {first.named}, or says its source.'
     )
-    if ratio < (least := FAR_BENT.get(kind, 0)):
+    if ratio < (least := first.overstressed_below):
         title += (
             f"\n# Below a ratio of {least} the wave generator stresses these proportions above the fatigue "
-            f"limit (`flexspline run`).\n# {LESS_BENT[kind]}; makers' dimensions are not published."
+            f"limit (`flexspline run`).\n# {first.lowers_stress}; makers' dimensions are not published."
         )
     stated = frozenset() if rated_Nm is None else frozenset({RATED})
     return text_of(title, values, kind, why, stated)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.first_values import BENT, LESS_BENT, TomlTable, first_values
+from flexspline.geometry.first_values import first_values
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
-from flexspline.geometry.toml_text import quoted
+from flexspline.geometry.shapes import SHAPES
+from flexspline.geometry.toml_text import TomlTable, quoted
 
 __all__ = ["design_text", "json_schema", "template"]
 
@@ -26,6 +27,7 @@ OPTIONAL: frozenset[Location] = frozenset(
 )
 """Written as comments: their absence means something."""
 
+OVERSTRESSED = "The wave generator stresses it above its fatigue limit (`flexspline run`)"
 NO_REASONS: Mapping[Location, str] = {}
 
 
@@ -37,9 +39,11 @@ def template(kind: str = "cup") -> str:
     DesignError : no such kind.
     """
     title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
-    if kind in BENT:
-        title += f"\n# {BENT[kind]}.\n# {LESS_BENT[kind]}."
-    return text_of(title, first_values(kind), kind, {})
+    values = first_values(kind)
+    first = SHAPES[kind].first
+    if first.overstressed:
+        title += f"\n# {OVERSTRESSED}.\n# {first.lowers_stress}."
+    return text_of(title, values, kind, {})
 
 
 def text_of(

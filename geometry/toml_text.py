@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from flexspline.geometry.errors import readable
+
+TomlTable = dict[str, Any]
 
 
 def quoted(text: str) -> str:

@@ -16,10 +16,10 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline, OutOfTimeError, Pace
 from flexspline.fea.types import MET, Elastic, Stiffness
-from flexspline.geometry.meridian import cup_meridian
+from flexspline.geometry.meridian import meridian_of
 
 STEEL = Elastic(206e3, 0.3)
-OUTLINE = cup_meridian(CUP)
+OUTLINE = meridian_of(CUP)
 FINE = 1e-5
 """A tolerance that takes many meshes."""
 SECONDS_A_MESH = 10.0

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
+from flexspline.geometry.cup import Cup
+from flexspline.geometry.hat import Hat
+from flexspline.geometry.meridian import meridian_of, shaft_meridian
 from flexspline.geometry.outline import Meridian, Segment
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
-from flexspline.geometry.shapes import Cup, Hat
 
 
 def outline(*corners: tuple[float, float, str | None]) -> Meridian:
@@ -57,7 +58,7 @@ def cups(draw: st.DrawFn) -> Meridian:
     boss = draw(st.floats(0.2, 0.7)) * inner
     bore = draw(st.sampled_from([0.0, 0.3, 0.6])) * boss
     fillet = draw(st.floats(0.1, 0.8)) * min(inner - boss, 0.2 * tube["length_mm"])
-    return cup_meridian(
+    return meridian_of(
         Cup(
             kind="cup",
             **tube,
@@ -78,7 +79,7 @@ def hats(draw: st.DrawFn) -> Meridian:
     thickness = draw(st.floats(0.4, 2.5))
     flange = wall * draw(st.floats(1.3, 1.8))
     fillet = draw(st.floats(0.1, 0.8)) * min(flange - wall, 0.2 * tube["length_mm"])
-    return hat_meridian(
+    return meridian_of(
         Hat(
             kind="hat",
             **tube,

@@ -7,8 +7,8 @@ from math import pi
 import pytest
 
 from flexspline.geometry.cad import build_solid
+from flexspline.geometry.cup import Cup
 from flexspline.geometry.design import Design
-from flexspline.geometry.shapes import Cup
 
 VOLUME = 1e-7
 """Relative: the kernel integrates volumes to about 1e-8."""

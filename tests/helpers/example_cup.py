@@ -2,8 +2,8 @@
 
 from example_files import EXAMPLES
 
+from flexspline.geometry.cup import Cup
 from flexspline.geometry.load import load_design
-from flexspline.geometry.shapes import Cup
 
 
 def _revolved() -> Cup:

@@ -16,7 +16,7 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.axisymmetric.torsion_fields import bracket
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import NMM_PER_NM, Elastic
-from flexspline.geometry.meridian import cup_meridian, shaft_meridian
+from flexspline.geometry.meridian import meridian_of, shaft_meridian
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
@@ -107,7 +107,7 @@ def test_model_page_cup(record):
     The series counts the whole length as tube; in the solid the plate and the driven ring take
     10 mm of it, so K lies above the series.
     """
-    found = torsional_stiffness(cup_meridian(MODEL_CUP), STEEL, "mesh", 1e-3)
+    found = torsional_stiffness(meridian_of(MODEL_CUP), STEEL, "mesh", 1e-3)
     case, source = "Cup turned evenly, K_b", "tube and plate in series, and above"
     record(case, source, (44.7e3, 60e3), found.K_Nm_per_rad, "N·m/rad")
     assert 44.7e3 < found.lower_Nm_per_rad < found.upper_Nm_per_rad < 60e3
