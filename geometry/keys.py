@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from flexspline.geometry.design import Design
@@ -65,21 +65,28 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
 
 def lengths(part: Part) -> dict[str, float]:
     """Dotted keys of all lengths above 0 [mm] that a part's meridian has."""
-    found: dict[str, float] = {}
+    table = part.shape.model_dump(mode="json", exclude_none=True, exclude={"keyway"})
+    return {
+        key: float(value)
+        for key, value in leaves(part.name, table)
+        if key.endswith("_mm") and not key.endswith(HOLES) and value > 0
+    }
 
-    def walk(prefix: str, value: Any) -> None:
-        if isinstance(value, dict):
-            for name, inner in value.items():
-                if name != "keyway":
-                    walk(f"{prefix}.{name}", inner)
-        elif isinstance(value, list):
-            for i, inner in enumerate(value):
-                walk(f"{prefix}[{i}]", inner)
-        elif prefix.endswith("_mm") and not prefix.endswith(HOLES) and value > 0:
-            found[prefix] = float(value)
 
-    walk(part.name, part.shape.model_dump(mode="json", exclude_none=True))
-    return found
+def leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Dotted key and value of whatever a table or list holds that is neither.
+
+    >>> list(leaves("shaft", {"segment": [{"length_mm": 4.0}], "fillet_mm": 0.5}))
+    [('shaft.segment[0].length_mm', 4.0), ('shaft.fillet_mm', 0.5)]
+    """
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from leaves(f"{key}.{name}" if key else name, inner)
+    elif isinstance(value, list):
+        for i, inner in enumerate(value):
+            yield from leaves(f"{key}[{i}]", inner)
+    else:
+        yield key, value
 
 
 def without_holes(design: Design) -> Design:

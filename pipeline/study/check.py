@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING
-from flexspline.geometry.keys import has_table_of, location_of, value_at
+from flexspline.geometry.keys import has_table_of, leaves, location_of, value_at
 from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.schema import allowed, dotted, node_at
 from flexspline.pipeline.backlash import STD_KEY
@@ -110,20 +108,11 @@ def _check_spread(study: Study, key: str, spread: Spread) -> None:
 
 
 def _numeric_keys(design: Design) -> list[str]:
-    found: list[str] = []
-
-    def walk(prefix: str, value: Any) -> None:
-        if isinstance(value, dict):
-            for name, inner in value.items():
-                walk(f"{prefix}.{name}" if prefix else name, inner)
-        elif isinstance(value, list):
-            for i, inner in enumerate(value):
-                walk(f"{prefix}[{i}]", inner)
-        elif isinstance(value, int | float) and not isinstance(value, bool):
-            found.append(prefix)
-
-    walk("", design.tables)
-    return found
+    return [
+        key
+        for key, value in leaves("", design.tables)
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    ]
 
 
 def _check_span(study: Study, key: str, span: VariedSpan) -> None:
