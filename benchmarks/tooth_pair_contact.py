@@ -24,7 +24,7 @@ from netgen import occ
 from flexspline.fea.types import Elastic
 from flexspline.geometry.basic_rack import ADDENDUM
 from flexspline.geometry.design import Design
-from flexspline.pipeline.gear_model import pair_compliance
+from flexspline.pipeline.gear.gear_model import pair_compliance
 
 RESULTS = Path(__file__).with_suffix(".json")
 BEHIND_mm = (None, 1.5, 3.0)

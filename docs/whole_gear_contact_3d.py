@@ -16,8 +16,8 @@ from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sized import sized_template
-from flexspline.pipeline.gear import CARRYING_SHARE
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear.gear_curve import CARRYING_SHARE
+from flexspline.pipeline.gear.gear_model import gear_model
 
 RECORD = Path(__file__).parents[1] / "benchmarks" / "gear_contact" / "record.json"
 TEETH = RECORD.parents[1] / "tooth_pair_contact.json"

@@ -20,10 +20,10 @@ from flexspline.geometry.sized import WALL_SHARE, sized_template
 from flexspline.pipeline import revolved
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import backlash
-from flexspline.pipeline.gear import LOADING, GearCurve, curve_of
-from flexspline.pipeline.gear_chain import Chain, chain_of, chords
-from flexspline.pipeline.gear_model import gear_model
-from flexspline.pipeline.gear_terms import TIGHT, gear_terms, small_torque
+from flexspline.pipeline.gear.gear_chain import Chain, chain_of, chords
+from flexspline.pipeline.gear.gear_curve import LOADING, GearCurve, curve_of
+from flexspline.pipeline.gear.gear_model import gear_model
+from flexspline.pipeline.gear.gear_terms import TIGHT, gear_terms, small_torque
 from flexspline.pipeline.part_stiffness import part_stiffness
 
 ROOT = Path(__file__).parents[1]

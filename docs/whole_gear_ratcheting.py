@@ -14,8 +14,8 @@ from whole_gear_figures import CATALOGUE, CHANGES, sized_design
 from flexspline.fea.gear.engagement import Engagement
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.rated import rated_torque
-from flexspline.pipeline.gear_model import gear_model
-from flexspline.pipeline.largest_torques import tube_of
+from flexspline.pipeline.gear.gear_model import gear_model
+from flexspline.pipeline.gear.largest_torques import tube_of
 
 PITCH_RADIUS = 1.27
 """Of a catalogue's size [mm]: half of a tenth of an inch."""

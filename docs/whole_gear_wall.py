@@ -12,7 +12,7 @@ from whole_gear_figures import CATALOGUE, sized_design
 
 from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, EndFixity, Tube
 from flexspline.geometry.sized import PITCH_RADIUS_PER_SIZE_mm
-from flexspline.pipeline.largest_torques import tube_of
+from flexspline.pipeline.gear.largest_torques import tube_of
 
 RECORD = Path(__file__).parents[1] / "benchmarks" / "tube_buckling.json"
 RATIO = 100

@@ -14,7 +14,7 @@ from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.figure_tasks import FigureTasks
-from flexspline.pipeline.gear import GearCurve, gear_curve
+from flexspline.pipeline.gear.gear_curve import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from flexspline.fea.types import SolidField, Stiffness
     from flexspline.geometry.design import Design
     from flexspline.pipeline.backlash import Backlash
-    from flexspline.pipeline.gear import GearCurve
+    from flexspline.pipeline.gear.gear_curve import GearCurve
     from flexspline.pipeline.stress_limits import StressCase
     from flexspline.pipeline.study.result import StudyResult
     from flexspline.pipeline.study.slope import Slope
@@ -175,7 +175,7 @@ def gear(design: Design) -> GearCurve:
     True
     """
     from flexspline.pipeline.analysis import analysis_context
-    from flexspline.pipeline.gear import gear_curve
+    from flexspline.pipeline.gear.gear_curve import gear_curve
 
     require_design(design)
     return gear_curve(analysis_context(design))

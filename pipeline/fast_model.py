@@ -12,8 +12,8 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
-from flexspline.pipeline.gear import GearCurve, curve_of
-from flexspline.pipeline.gear_chain import fast_chain
+from flexspline.pipeline.gear.gear_chain import fast_chain
+from flexspline.pipeline.gear.gear_curve import GearCurve, curve_of
 from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.peak_with_holes import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.revolved import first_rim, stiffness, with_equivalent_ring

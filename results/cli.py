@@ -129,7 +129,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     with answered(design, RESUMES):
         job = begin(design, out, GEAR)
         from flexspline.pipeline.analysis import stiffnesses
-        from flexspline.pipeline.gear import gear_curve
+        from flexspline.pipeline.gear.gear_curve import gear_curve
         from flexspline.results.gear import gear_record, write_gear
         from flexspline.results.gear_words import gear_notes, gear_warnings
 

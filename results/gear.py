@@ -9,7 +9,7 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
-from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.gear.gear_curve import GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.atomic import write_together

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexspline.pipeline.backlash import TERMS
-from flexspline.pipeline.gear_terms import TIGHT
+from flexspline.pipeline.gear.gear_terms import TIGHT
 from flexspline.results.quantities import quantity
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from flexspline.geometry.errors import plain_number
 from flexspline.geometry.rated import LOST_MOTION_TORQUE
-from flexspline.pipeline.gear_remarks import (
+from flexspline.pipeline.gear.gear_remarks import (
     BucklingTube,
     CuttingFlanks,
     EarlyEnd,
@@ -29,10 +29,10 @@ from flexspline.pipeline.gear_remarks import (
     TwoTorques,
     WrongStroke,
 )
-from flexspline.pipeline.largest_torques import two_digits
+from flexspline.pipeline.gear.largest_torques import two_digits
 
 if TYPE_CHECKING:
-    from flexspline.pipeline.gear import GearCurve
+    from flexspline.pipeline.gear.gear_curve import GearCurve
 
 ENDS = {"ratchets": "the gear ratchets", "buckles": "the flexspline's tube buckles"}
 PLAIN_NOTES: Mapping[PlainGearNote, str] = {

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.analysis import RunResult
     from flexspline.pipeline.backlash import Backlash
     from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
-    from flexspline.pipeline.gear import GearCurve
+    from flexspline.pipeline.gear.gear_curve import GearCurve
     from flexspline.pipeline.linear_limit import LinearLimit
     from flexspline.pipeline.stiffnesses import Stiffnesses
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import Elastic
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear.gear_model import gear_model
 
 from . import solve as gear
 from . import stiffness as stiff

@@ -38,7 +38,7 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.sized import sized_template
 from flexspline.geometry.wave_generator import flexible_bearing
-from flexspline.pipeline.gear_model import GROOVE_SHARE, gear_model
+from flexspline.pipeline.gear.gear_model import GROOVE_SHARE, gear_model
 
 from . import stiffness as stiff
 from .forces import Problem

@@ -45,7 +45,7 @@ from flexspline.pipeline.stiffness_pair import StiffnessPair
 
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
-    from flexspline.pipeline.gear_chain import Chain
+    from flexspline.pipeline.gear.gear_chain import Chain
     from flexspline.pipeline.parts import AnalysisContext
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]

@@ -86,7 +86,7 @@ def diagnose_with_stiffness(
     used = pair or stiffness_pair(context(), *given.pair)
     chain = None
     if options.gear:
-        from flexspline.pipeline.gear_chain import chain_of
+        from flexspline.pipeline.gear.gear_chain import chain_of
 
         chain = chain_of(context())
     with (progress or Progress()).stage("diagnosis"):

@@ -21,8 +21,8 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.pipeline.backlash import backlash, series_stiffness
 from flexspline.pipeline.errors import NestingError
-from flexspline.pipeline.gear import curve_of
-from flexspline.pipeline.gear_chain import fast_chain
+from flexspline.pipeline.gear.gear_chain import fast_chain
+from flexspline.pipeline.gear.gear_curve import curve_of
 from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, half_seat_peak, torque_peak

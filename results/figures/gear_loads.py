@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.geometry.errors import plain_number
-from flexspline.pipeline.gear import GearCurve
-from flexspline.pipeline.gear_remarks import LoadedLastPair
+from flexspline.pipeline.gear.gear_curve import GearCurve
+from flexspline.pipeline.gear.gear_remarks import LoadedLastPair
 from flexspline.results.figures.chart import Chart
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity

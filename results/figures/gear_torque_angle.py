@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.gear.gear_curve import GearCurve
 from flexspline.results.figures.chart import Chart
 from flexspline.results.figures.words import angle_title, torque_title
 from flexspline.results.quantities import quantity

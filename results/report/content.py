@@ -10,7 +10,7 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import Backlash
-from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.gear.gear_curve import GearCurve
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stiffnesses import series_bounds_Nm_per_rad
 from flexspline.results.quantities import quantity

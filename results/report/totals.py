@@ -9,7 +9,7 @@ from flexspline.results.report.content import ReportContent
 from flexspline.results.report.spans import Words, bold, plain, ref, symbol, worded
 
 if TYPE_CHECKING:
-    from flexspline.pipeline.gear import GearCurve
+    from flexspline.pipeline.gear.gear_curve import GearCurve
 
 _SERIES = quantity("K_series_Nm_per_rad")
 _SUM = quantity("backlash_arcsec.total")

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import Backlash
-from flexspline.pipeline.gear import GearCurve
-from flexspline.pipeline.gear_terms import TIGHT
+from flexspline.pipeline.gear.gear_curve import GearCurve
+from flexspline.pipeline.gear.gear_terms import TIGHT
 from flexspline.results.gear_terms import term_names
 from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.numbers import grouped

@@ -11,7 +11,7 @@ from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.listed import joined
 from flexspline.geometry.part_name import PART_NAMES
 from flexspline.geometry.percent import percent, percent_change
-from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
+from flexspline.pipeline.gear.gear_curve import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT, PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_WIDTH, STUDY_TORSION_WIDTH
 from flexspline.pipeline.study.figures import stiffness_keys

@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 
 if TYPE_CHECKING:
-    from flexspline.pipeline.gear_chain import Chain
+    from flexspline.pipeline.gear.gear_chain import Chain
 
 
 def diagnose_file(

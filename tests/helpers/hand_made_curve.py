@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.geometry.assumed import Assumed
-from flexspline.pipeline.gear import LOADING, GearCurve
-from flexspline.pipeline.gear_remarks import HalvedBalls
-from flexspline.pipeline.gear_terms import TIGHT
+from flexspline.pipeline.gear.gear_curve import LOADING, GearCurve
+from flexspline.pipeline.gear.gear_remarks import HalvedBalls
+from flexspline.pipeline.gear.gear_terms import TIGHT
 
 TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play", TIGHT)
 

@@ -19,9 +19,9 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.sized import sized_template
 from flexspline.geometry.template import design_text
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.gear import LAWS, LOADING, GearCurve, curve_of
-from flexspline.pipeline.gear_chain import chain_of
-from flexspline.pipeline.gear_model import pair_compliance
+from flexspline.pipeline.gear.gear_chain import chain_of
+from flexspline.pipeline.gear.gear_curve import LAWS, LOADING, GearCurve, curve_of
+from flexspline.pipeline.gear.gear_model import pair_compliance
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear

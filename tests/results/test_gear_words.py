@@ -10,7 +10,7 @@ import pytest
 from hand_made_curve import gear_curve
 
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.gear_remarks import (
+from flexspline.pipeline.gear.gear_remarks import (
     BucklingTube,
     CuttingFlanks,
     EarlyEnd,

@@ -1,4 +1,4 @@
-"""The curve of the whole gear (`pipeline.gear`) as what a sweep is compared with."""
+"""The curve of the whole gear (`pipeline.gear.gear_curve`) as what a sweep is compared with."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.gear import LOADING
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
+from flexspline.pipeline.gear.gear_curve import LOADING
 
 SMALLEST = LOADING[0]
 """Of the largest torque: there the teeth have just met, and twice the angle is the gap."""

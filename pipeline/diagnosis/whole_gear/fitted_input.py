@@ -12,7 +12,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
 
 SECANT_STEPS = 4
 """Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""

@@ -40,7 +40,7 @@ from flexspline.pipeline.diagnosis.whole_gear.fitted_input import (
 )
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
 
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""

@@ -9,7 +9,7 @@ from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import MM_PER_UM
 from flexspline.geometry.wave_generator import flexible_bearing
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
 
 MOST_PLAY_STROKES = 1.9
 """Times the radial stroke w0: a play of 2 w0 takes the whole of it, and the gear turns freely."""

@@ -16,7 +16,7 @@ from scipy.optimize import lsq_linear
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
 
 PAIRS_FOLLOWED = 3
 """Pairs that are followed with the model: slopes at the nominal values order them, roughly."""

@@ -11,7 +11,7 @@ from example_files import EXAMPLES
 from flexspline.fea.gear.circular_spline import condensed_spline, spline_outline
 from flexspline.fea.types import Elastic
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear.gear_model import gear_model
 
 STEEL = Elastic(206e3, 0.3)
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")

@@ -13,7 +13,7 @@ from flexspline.fea.gear.engagement import TORQUE_SHARE, Engagement
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.load import load_design
 from flexspline.geometry.rated import rated_torque
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear.gear_model import gear_model
 
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 RATED = rated_torque(DESIGN)[0]

@@ -14,8 +14,8 @@ from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import gear_model as settings
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear import gear_model as settings
+from flexspline.pipeline.gear.gear_model import gear_model
 
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 

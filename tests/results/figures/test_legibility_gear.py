@@ -9,7 +9,7 @@ import pytest
 from hand_made_curve import gear_curve
 from legibility import drawn_figures, faults
 
-from flexspline.pipeline.gear_remarks import LoadedLastPair
+from flexspline.pipeline.gear.gear_remarks import LoadedLastPair
 from flexspline.results.figures.gear_loads import write_gear_loads
 from flexspline.results.figures.gear_torque_angle import write_gear_angle
 

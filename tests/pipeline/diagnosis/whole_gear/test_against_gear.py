@@ -24,7 +24,7 @@ from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve
 from flexspline.pipeline.diagnosis.whole_gear.fitted_input import angles_as_recorded
-from flexspline.pipeline.gear_chain import Chain, chain_of
+from flexspline.pipeline.gear.gear_chain import Chain, chain_of
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({"shaft.bolt_count": 0})
 LARGEST_Nm, FRICTION_arcsec = 10.0, 6.0

@@ -21,7 +21,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.whole_gear import identification
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
-from flexspline.pipeline.gear_chain import Chain, chain_of
+from flexspline.pipeline.gear.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
 pytestmark = pytest.mark.usefixtures("causes_only")

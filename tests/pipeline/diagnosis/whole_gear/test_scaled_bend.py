@@ -15,8 +15,8 @@ from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
-from flexspline.pipeline.gear import LOADING
-from flexspline.pipeline.gear_chain import Chain, chain_of
+from flexspline.pipeline.gear.gear_chain import Chain, chain_of
+from flexspline.pipeline.gear.gear_curve import LOADING
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 

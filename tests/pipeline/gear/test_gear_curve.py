@@ -9,9 +9,9 @@ from random_designs import design_of
 from flexspline.geometry.load import design_from
 from flexspline.geometry.rated import rated_torque
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.gear import LOADING, curve_of
-from flexspline.pipeline.gear_chain import Chain, chords
-from flexspline.pipeline.gear_model import even, gear_model
+from flexspline.pipeline.gear.gear_chain import Chain, chords
+from flexspline.pipeline.gear.gear_curve import LOADING, curve_of
+from flexspline.pipeline.gear.gear_model import even, gear_model
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexspline.fea.gear.tube_buckling import Tube
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
-from flexspline.pipeline.gear_remarks import BucklingTube, EarlyEnd, GearNote, GearWarning
+from flexspline.pipeline.gear.gear_remarks import BucklingTube, EarlyEnd, GearNote, GearWarning
 
 
 def tube_of(design: Design) -> Tube | None:

@@ -14,7 +14,7 @@ from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
 from flexspline.pipeline import revolved
-from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear.gear_model import gear_model
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 

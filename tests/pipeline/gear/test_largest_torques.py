@@ -9,7 +9,7 @@ from hand_made_curve import gear_curve
 
 from flexspline.fea.gear.tube_buckling import Tube
 from flexspline.fea.types import Elastic
-from flexspline.pipeline.largest_torques import largest_torques
+from flexspline.pipeline.gear.largest_torques import largest_torques
 from flexspline.results.gear_words import gear_notes
 
 TUBE = Tube(radius=19.4, wall=0.4, length=21.25, material=Elastic(206e3, 0.3))

@@ -24,9 +24,9 @@ from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.rated import LOST_MOTION_SHARE, rated_in_proportion, rated_torque
 from flexspline.geometry.whole_gear import require_whole_gear
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.gear_chain import Chain, chain_of, chords
-from flexspline.pipeline.gear_model import CONFORMITY
-from flexspline.pipeline.gear_notes import (
+from flexspline.pipeline.gear.gear_chain import Chain, chain_of, chords
+from flexspline.pipeline.gear.gear_model import CONFORMITY
+from flexspline.pipeline.gear.gear_notes import (
     both_press_N,
     notes,
     of_chords,
@@ -34,9 +34,14 @@ from flexspline.pipeline.gear_notes import (
     of_torques,
     warnings,
 )
-from flexspline.pipeline.gear_remarks import GearNote, GearWarning
-from flexspline.pipeline.gear_terms import FREE_ANGLE_TERMS, gear_terms, play_effect, small_torque
-from flexspline.pipeline.largest_torques import (
+from flexspline.pipeline.gear.gear_remarks import GearNote, GearWarning
+from flexspline.pipeline.gear.gear_terms import (
+    FREE_ANGLE_TERMS,
+    gear_terms,
+    play_effect,
+    small_torque,
+)
+from flexspline.pipeline.gear.largest_torques import (
     buckling_torque,
     largest_torques,
     tube_of,
@@ -79,7 +84,7 @@ class GearCurve:
         each, front less back flank, at rated torque.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± `terms_torque_Nm`, T_L, in place of the backlash sum's terms
-        (`pipeline.gear_terms`); empty where nobody asked.
+        (`pipeline.gear.gear_terms`); empty where nobody asked.
     buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube, or
         it yields first.
     ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces

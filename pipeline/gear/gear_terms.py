@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.gear_chain import Chain
+from flexspline.pipeline.gear.gear_chain import Chain
 
 SMALL = 1e-3
 """Of load or rated torque, the smaller: it turns the gear through its gaps, and hardly winds it up."""

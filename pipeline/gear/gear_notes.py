@@ -15,8 +15,8 @@ from flexspline.geometry.circular_spline import SHALLOWEST
 from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
-from flexspline.pipeline.gear_model import even
-from flexspline.pipeline.gear_remarks import (
+from flexspline.pipeline.gear.gear_model import even
+from flexspline.pipeline.gear.gear_remarks import (
     CuttingFlanks,
     FallingStiffness,
     GearNote,
@@ -35,7 +35,7 @@ from flexspline.pipeline.gear_remarks import (
     TwoTorques,
     WrongStroke,
 )
-from flexspline.pipeline.gear_terms import PlayEffect
+from flexspline.pipeline.gear.gear_terms import PlayEffect
 
 LOW_RIM = 0.05
 """Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
