@@ -229,4 +229,4 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     asked = load_study(path)
     folder = file_name(out, "out") if out is not None else default_folder(path)
     store = trial_store_of(asked, folder)
-    return whole_study(asked, store, lambda progress: None, lambda line: None)
+    return whole_study(asked, store)

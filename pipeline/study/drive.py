@@ -58,6 +58,17 @@ class StudyProgress:
     size: int
 
 
+@dataclass(frozen=True)
+class StudyListener:
+    """Who hears of a study: `watch` how far it is, `say` a line on what is computed beside its designs."""
+
+    watch: Callable[[StudyProgress], None] = lambda progress: None
+    say: Callable[[str], None] = lambda line: None
+
+
+NOBODY = StudyListener()
+
+
 def evaluate_all(
     source: Source,
     store: TrialStore,

@@ -12,8 +12,9 @@ from typing import Any
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import (
+    NOBODY,
     Source,
-    StudyProgress,
+    StudyListener,
     evaluate_all,
     is_complete,
     within,
@@ -111,8 +112,7 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
 def whole_study(
     study: Study,
     store: TrialStore,
-    watch: Callable[[StudyProgress], None],
-    say: Callable[[str], None],
+    listener: StudyListener = NOBODY,
 ) -> StudyResult:
     """`run_study` with the workers that the study asks for, its K_e corrected for holes.
 
@@ -120,9 +120,9 @@ def whole_study(
     """
     run = study.file.run
     pool = partial(worker_pool, run.workers, run.scheduler)
-    found = nominal_holes(study, store, say)
+    found = nominal_holes(study, store, listener.say)
     holes = found if isinstance(found, HolesEffect) else None
-    result = run_study(study, store, pool, watch, say=say, holes=holes)
+    result = run_study(study, store, pool, listener=listener, holes=holes)
     if isinstance(found, UnknownEffect):
         result = replace(result, no_holes_effect=found.reason)
     if result.about_scatter or not result.pareto:
@@ -134,9 +134,8 @@ def run_study(
     study: Study,
     store: TrialStore,
     pool: Callable[[], AbstractContextManager[WorkerPool]],
-    watch: Callable[[StudyProgress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
-    say: Callable[[str], None] = lambda line: None,
+    listener: StudyListener = NOBODY,
     holes: HolesEffect | None = None,
 ) -> StudyResult:
     """Evaluate what is not yet evaluated, verify the best; `pool` opens only where there is work.
@@ -153,10 +152,10 @@ def run_study(
             return stack.enter_context(pool())
 
         if not is_complete(source, store):
-            evaluate_all(source, store, opened(), evaluation, watch)
+            evaluate_all(source, store, opened(), evaluation, listener.watch)
         rows = within(store.rows(), source.size)
         result = _scattered(StudyResult(study, rows), source)
-        return replace(result, verified=verify(result, store, opened, source.task, say))
+        return replace(result, verified=verify(result, store, opened, source.task, listener.say))
 
 
 def _scattered(result: StudyResult, source: Source) -> StudyResult:

@@ -7,7 +7,7 @@ from typing import Any
 
 from flexspline.pipeline.study.best import best_field
 from flexspline.pipeline.study.cluster import check_scheduler
-from flexspline.pipeline.study.drive import within
+from flexspline.pipeline.study.drive import StudyListener, within
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import source_of, trial_store_of, whole_study
 from flexspline.pipeline.study.study import Study
@@ -45,7 +45,7 @@ def evaluated(study: Study, folder: Path) -> StudyResult:
         tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
     if kept := len(within(store.rows(), size)):
         tell(f"{kept} designs are finished already")
-    return whole_study(study, store, Watch(study), tell)
+    return whole_study(study, store, StudyListener(Watch(study), tell))
 
 
 def study_answer(

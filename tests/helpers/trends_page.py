@@ -157,9 +157,7 @@ def sweep(name: str) -> Sweep:
     """The row's study, carried out here."""
     study = load_study(EXAMPLES / "studies" / f"trends-{name}.toml")
     with tempfile.TemporaryDirectory() as folder:
-        rows = run_study(
-            study, trial_store_of(study, Path(folder)), alone, lambda p: None, torsion
-        ).rows
+        rows = run_study(study, trial_store_of(study, Path(folder)), alone, torsion).rows
     assert not any(r.outcome.reason for r in rows), [r.outcome.reason for r in rows]
 
     def column(key: str) -> np.ndarray:

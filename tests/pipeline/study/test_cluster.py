@@ -33,7 +33,7 @@ def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv(MARKS, str(tmp_path))
     study = study_of(GRID)
     rows = run_study(
-        study, trial_store_of(study, tmp_path), lambda: worker_pool(1, ""), lambda p: None, deadly
+        study, trial_store_of(study, tmp_path), lambda: worker_pool(1, ""), deadly
     ).rows
     assert len(rows) == 6
     (lost,) = (r for r in rows if r.outcome.reason)
@@ -62,10 +62,6 @@ def test_a_running_scheduler_takes_the_study(
     with LocalCluster(n_workers=1, protocol="tcp", dashboard_address="127.0.0.1:0") as cluster:
         address = cluster.scheduler_address
         rows = run_study(
-            study,
-            trial_store_of(study, tmp_path),
-            lambda: worker_pool(1, address),
-            lambda p: None,
-            quick,
+            study, trial_store_of(study, tmp_path), lambda: worker_pool(1, address), quick
         ).rows
     assert [r.outcome for r in rows] == [quick(Task({}, r.values, ())) for r in rows]

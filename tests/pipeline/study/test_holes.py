@@ -249,9 +249,7 @@ def test_keys_that_the_fast_model_does_not_follow() -> None:
 
 def test_every_row_says_its_factor(tmp_path: Path) -> None:
     study = study_of(STUDY)
-    rows = run_study(
-        study, trial_store_of(study, tmp_path), threads, lambda p: None, holes=HOLES
-    ).rows
+    rows = run_study(study, trial_store_of(study, tmp_path), threads, holes=HOLES).rows
     built = [r for r in rows if not r.outcome.reason]
     assert built
     factors = {

@@ -36,9 +36,7 @@ def without_lift_off(task: Task) -> Outcome:
 
 def result_of(text: str, folder: Path) -> StudyResult:
     study = study_of(text)
-    return run_study(
-        study, trial_store_of(study, folder), threads, lambda p: None, without_lift_off
-    )
+    return run_study(study, trial_store_of(study, folder), threads, without_lift_off)
 
 
 def test_a_figure_that_nothing_asks_for_may_be_missing(tmp_path: Path) -> None:

@@ -29,9 +29,7 @@ design = "xb1-40.toml"
 
 def found(text: str, folder: Path, evaluation) -> StudyResult:
     study = study_of(text)
-    return run_study(
-        study, trial_store_of(study, folder), threads, lambda progress: None, evaluation
-    )
+    return run_study(study, trial_store_of(study, folder), threads, evaluation)
 
 
 def two_valleys(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

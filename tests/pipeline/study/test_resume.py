@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 
+from flexspline.pipeline.study.drive import StudyListener
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.plan import grid
 from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
@@ -18,10 +19,6 @@ from flexspline.pipeline.study.store import Finished, TrialStore
 SIZE = 40
 OPTIMIZED = GRID.replace('"grid"', '"optimize"\nevaluations = 6').replace(", steps = 3", "")
 LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")
-
-
-def silent(progress: object) -> None:
-    pass
 
 
 class Counted:
@@ -44,7 +41,7 @@ class Counted:
 def work(folder: Path, seconds: float) -> None:
     study = study_of(LONG_GRID)
     store = trial_store_of(study, folder)
-    run_study(study, store, threads, silent, Counted(folder / "done", seconds))
+    run_study(study, store, threads, Counted(folder / "done", seconds))
 
 
 def started(folder: Path, seconds: float) -> multiprocessing.Process:
@@ -55,7 +52,7 @@ def started(folder: Path, seconds: float) -> multiprocessing.Process:
 
 def test_a_grid_has_every_combination_once(tmp_path: Path) -> None:
     study = study_of(GRID)
-    rows = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows
+    rows = run_study(study, trial_store_of(study, tmp_path), threads, quick).rows
     assert sorted((r.values[WALL], r.values[LENGTH]) for r in rows) == sorted(
         (w, n) for w in (0.3, 0.4, 0.5) for n in (25.0, 30.0)
     )
@@ -77,8 +74,8 @@ def test_values_of_a_grid_are_as_a_person_writes_them() -> None:
 
 def test_the_same_command_again_evaluates_nothing(tmp_path: Path) -> None:
     study, counted = study_of(GRID), Counted(tmp_path / "done", 0.0)
-    first = run_study(study, trial_store_of(study, tmp_path), threads, silent, counted).rows
-    again = run_study(study, trial_store_of(study, tmp_path), threads, silent, counted).rows
+    first = run_study(study, trial_store_of(study, tmp_path), threads, counted).rows
+    again = run_study(study, trial_store_of(study, tmp_path), threads, counted).rows
     assert again == first
     assert len(counted.lines()) == len(first) == 6
 
@@ -131,7 +128,7 @@ def test_a_design_that_cannot_be_built_is_a_row_with_its_reason(tmp_path: Path) 
         "max = 0.5, steps = 3", "max = 0.4, steps = 2"
     )
     study = study_of(text)
-    result = run_study(study, trial_store_of(study, tmp_path), threads, silent)
+    result = run_study(study, trial_store_of(study, tmp_path), threads)
     assert len(result.rows) == 2
     assert result.built == ()
     assert all("ring_width_mm" in r.outcome.reason for r in result.rows)
@@ -143,7 +140,7 @@ def test_a_bug_is_no_reason(tmp_path: Path) -> None:
 
     study = study_of(GRID)
     with pytest.raises(ZeroDivisionError):
-        run_study(study, trial_store_of(study, tmp_path), threads, silent, broken)
+        run_study(study, trial_store_of(study, tmp_path), threads, broken)
 
 
 @pytest.mark.parametrize("at", [1, pytest.param(4, marks=pytest.mark.long)])
@@ -158,9 +155,9 @@ def test_what_was_stopped_goes_on_in_the_same_process(at: int, tmp_path: Path) -
 
     slow = Counted(tmp_path / "done", 0.7)
     with pytest.raises(KeyboardInterrupt):
-        run_study(study, trial_store_of(study, tmp_path), threads, stop, slow)
+        run_study(study, trial_store_of(study, tmp_path), threads, slow, StudyListener(stop))
     began = time.monotonic()
-    rows = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows
+    rows = run_study(study, trial_store_of(study, tmp_path), threads, quick).rows
     assert len(rows) == 6
     assert time.monotonic() - began < 20
 
@@ -181,15 +178,15 @@ def test_a_stop_while_a_row_is_stored_leaves_its_design_free(
     with monkeypatch.context() as patched:
         patched.setattr(TrialStore, "tell", stop)
         with pytest.raises(KeyboardInterrupt):
-            run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
+            run_study(study, trial_store_of(study, tmp_path), threads, quick)
     began = time.monotonic()
-    assert len(run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows) == 6
+    assert len(run_study(study, trial_store_of(study, tmp_path), threads, quick).rows) == 6
     assert time.monotonic() - began < 20
 
 
 def test_a_study_without_an_objective_has_no_best_and_ends(tmp_path: Path) -> None:
     study = study_of(GRID.replace('[objective]\n"K_b_Nm_per_rad" = "maximize"\n', ""))
-    result = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, quick)
     assert len(result.feasible) == 6
     assert result.best(5) == ()
 
@@ -205,7 +202,7 @@ def test_a_study_made_shorter_has_its_own_designs(tmp_path: Path) -> None:
     store.give_up(jobs[2])
     shorter = study_of(f"{sobol}4")
     again = trial_store_of(shorter, tmp_path)
-    result = run_study(shorter, again, threads, silent, quick)
+    result = run_study(shorter, again, threads, quick)
     assert [row.slot for row in result.rows] == [0, 1, 2, 3]
 
 
@@ -226,6 +223,8 @@ def test_a_study_made_shorter_waits_for_its_own_designs(
     monkeypatch.setattr("flexspline.pipeline.study.drive.time.sleep", finished_elsewhere)
     shorter = study_of(f"{sobol}4")
     again = trial_store_of(shorter, tmp_path)
-    result = run_study(shorter, again, threads, lambda p: told.append(len(p.rows)), quick)
+    result = run_study(
+        shorter, again, threads, quick, StudyListener(lambda p: told.append(len(p.rows)))
+    )
     assert [row.slot for row in result.rows] == [0, 1, 2, 3]
     assert told == [3, 4]

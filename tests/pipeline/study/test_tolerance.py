@@ -43,7 +43,7 @@ def test_a_known_function_through_a_whole_study(tmp_path: Path) -> None:
         x, y, z = ((task.values[i.key] - i.nominal) / (i.high - i.nominal) for i in own)
         return Outcome({TOTAL: x + y**2 + x * z})
 
-    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None, evaluation)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, evaluation)
     (scatter,) = result.scatter
     found = scatter.indices
     assert found is not None
@@ -170,7 +170,7 @@ def test_the_scatter_of_the_design_s_own_uncertainty_is_its_standard_deviation(
     study = study_of(
         'design = "xb1-40.toml"\n[run]\nmethod = "tolerance"\nevaluations = 320\n'
     )  # fmt: skip
-    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None)
+    result = run_study(study, trial_store_of(study, tmp_path), threads)
     (scatter,) = result.scatter
     stated = np.median([r.outcome.figures["backlash_arcsec.std"] for r in result.rows])
     # 128 independent designs know a standard deviation to 1/√(2·128) = 6 %, a Sobol sequence better
@@ -184,7 +184,7 @@ def test_a_study_whose_designs_all_fail_keeps_its_rows(tmp_path: Path) -> None:
     def evaluation(task: Task) -> Outcome:
         return Outcome(faults=("nothing could be built",))
 
-    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None, evaluation)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, evaluation)
     assert [r.outcome.reason for r in result.rows] == ["nothing could be built"] * 64
     assert result.scatter == ()
     assert "only 0 of" in result.unscattered

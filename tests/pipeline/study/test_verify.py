@@ -44,7 +44,7 @@ def test_the_solid_model_of_a_part_without_holes_agrees(tmp_path: Path) -> None:
     def torsion(task: Task) -> Outcome:
         return evaluate(replace(task, solves=("torsion",)))
 
-    result = run_study(plain, trial_store_of(plain, tmp_path), threads, lambda p: None, torsion)
+    result = run_study(plain, trial_store_of(plain, tmp_path), threads, torsion)
     (verified,) = result.verified
     assert verified.slot == result.pareto[0].slot
     assert {c.key for c in verified.checks} == {
@@ -71,7 +71,7 @@ def failing(fault: Exception) -> Callable[..., None]:
 def reason_of(folder: Path) -> str:
     """Of the best design of a study that is begun, or gone on with, in a folder."""
     study = study_of(TEXT)
-    result = run_study(study, trial_store_of(study, folder), mortal, lambda p: None, quick)
+    result = run_study(study, trial_store_of(study, folder), mortal, quick)
     (verified,) = result.verified
     return verified.reason
 

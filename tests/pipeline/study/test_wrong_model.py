@@ -57,7 +57,7 @@ def test_the_study_stops_and_keeps_no_row_of_it(tmp_path: Path) -> None:
 
     store = trial_store_of(study, tmp_path)
     with pytest.raises(NestingError, match=WALL):
-        run_study(study, store, threads, lambda p: None, torsion)
+        run_study(study, store, threads, torsion)
     assert not list(store.rows())
 
 
