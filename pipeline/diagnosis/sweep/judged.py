@@ -10,9 +10,15 @@ from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
-from flexspline.pipeline.diagnosis.structure import BackwardLoop, FarSlope, LateAngle
+from flexspline.pipeline.diagnosis.structure import (
+    BackwardLoop,
+    DraggedCrossing,
+    FarSlope,
+    LateAngle,
+)
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
+from flexspline.pipeline.diagnosis.sweep.dragged_crossing import dragged_crossing_of
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
 from flexspline.pipeline.diagnosis.sweep.left_over import LeftOver, judged, left_over
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned, slow_noise
@@ -27,14 +33,14 @@ from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 class JudgedSweep:
     """A record, its best explanation, what that leaves, and the verdict.
 
-    `misread` : a reading that comes late, where that is what the record shows.
+    `misread` : a reading that comes late, or drag that looks like one, where the record shows it.
     """
 
     sweep: Sweep
     explained: ExplainedSweep
     left: LeftOver
     decision: Decision
-    misread: BackwardLoop | LateAngle | None
+    misread: BackwardLoop | LateAngle | DraggedCrossing | None
 
 
 def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
@@ -79,13 +85,17 @@ def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
 
 def _misread(
     prepared: PreparedSweep, explained: ExplainedSweep, decision: Decision
-) -> BackwardLoop | LateAngle | None:
-    """A reading that comes late, where something was found that may be it."""
+) -> BackwardLoop | LateAngle | DraggedCrossing | None:
+    """A reading that comes late, or drag, where something was found that may be it."""
     found = None
     # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
     # curve's, a few loads of a gear that does nothing seem to
     if decision.unexplained:
         found = backward_of(prepared, explained)  # backward.py
     if found is None and (decision.causes or decision.unexplained):
-        return late_angle_of(prepared, explained)  # late_angle.py
+        late = late_angle_of(prepared, explained)  # late_angle.py
+        if late is not None:
+            return late
+        causes = decision.causes
+        return dragged_crossing_of(prepared, explained, causes)  # dragged_crossing.py
     return found
