@@ -210,7 +210,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     ------
     DesignError : the study file or its design is wrong.
     ComputationError : its storage or its cluster went away. Designs that fail are rows.
-    NestingError : two models contradict each other; no figure is to be trusted.
+    NestingError : two models of the shaft contradict each other before the first design.
 
     Examples
     --------

@@ -1,9 +1,6 @@
-"""Errors that stop the whole analysis, because a model of the program is wrong."""
+"""Errors that stop the whole analysis of a design, because a model of the program is wrong."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from copy import copy
 
 from flexspline.geometry.errors import FlexsplineError
 
@@ -12,7 +9,7 @@ class NestingError(FlexsplineError, RuntimeError):
     """Less material came out stiffer than more: one of the models is wrong.
 
     No ComputationError, which costs its own figure only: no figure of either model is to be trusted, so it
-    ends whatever was asked.
+    ends whatever was asked of the design. The other designs of a study keep their rows.
 
     Attributes
     ----------
@@ -26,10 +23,3 @@ class NestingError(FlexsplineError, RuntimeError):
             f"{less} is at least {softer:.7g} N·m/rad stiff, {more}, which has more material, at most "
             f"{stiffer:.7g}: one of the two solutions is wrong; please report the design file"
         )
-
-    def at(self, values: Mapping[str, float]) -> NestingError:
-        """The same of a design of a study: with its values by dotted key, before the reason."""
-        where = ", ".join(f"{key} = {value:g}" for key, value in values.items())
-        found = copy(self)
-        found.args = (f"design with {where}: {self}",) if where else self.args
-        return found

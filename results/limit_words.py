@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
 from flexspline.results.peaks import BORDER
+from flexspline.results.quantities import quantity
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -41,14 +42,14 @@ def beside_figure(passed: PassedLimit) -> str:
 
 def passed_line(passed: PassedLimit) -> str:
     """On its own, as a warning."""
-    figure = f"{passed.name}_mises_MPa = {passed.peak.mises_MPa:.4g}"
+    stress = quantity(f"{passed.name}_mises_MPa")
+    figure = f"{stress.name}: {stress.with_unit(passed.peak.mises_MPa)}"
     if passed.peak.at_excluded_border:
         far = passed.peak.exclusion_mm
         place = "at" if far is None else f"{far:.3g} mm from"
         figure += f" ({place} an edge towards which the stress still rises)"
-    if passed.key:
-        return f"{figure} is above {passed.key} = {passed.limit_MPa:g}"
-    return f"{figure} is {beside_figure(passed)}"
+    where = f" ({passed.key})" if passed.key else ""
+    return f"{figure} is {beside_figure(passed)}{where}"
 
 
 def reason(limit: LinearLimit) -> str:

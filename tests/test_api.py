@@ -181,6 +181,26 @@ def test_a_model_answers_a_history_without_rows(diagnosed: Any) -> None:
     assert one == model.angle_arcsec([1.0], temperature_C=[25.0])
 
 
+@pytest.mark.parametrize(
+    ("torque", "channels", "needle"),
+    [
+        ("much", {}, "torque_Nm must hold numbers"),
+        ([1j, 2.0], {}, "torque_Nm must hold numbers"),
+        ([[1.0, 2.0], [3.0]], {}, "torque_Nm must hold numbers"),
+        (
+            [0.0, 1.0],
+            {"time_s": [1.0, 0.0], "temperature_C": [20.0, 20.0]},
+            "time_s runs backwards",
+        ),
+    ],
+)
+def test_a_model_refuses_a_history_that_is_none(
+    diagnosed: Any, torque: Any, channels: dict[str, list[float]], needle: str
+) -> None:
+    with pytest.raises(flexspline.FlexsplineError, match=needle):
+        diagnosed.model.angle_arcsec(torque, **channels)
+
+
 def test_changed_is_a_new_design() -> None:
     design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
     longer = design.changed({"flexspline.length_mm": 35.0, "shaft.segment[1].length_mm": 12.0})

@@ -129,6 +129,7 @@ DoingKind = Literal[
     "other_positions",
     "between_positions",
     "more_cycles",
+    "slower",
     "compare_channels",
     "compare_channels_and_cell",
     "weigh_torque_cell",

@@ -162,7 +162,21 @@ class LateAngle:
     rms_arcsec: float
 
 
-BrokenLimit = Slip | FarSlope | NegativeGap | MissedLevel | BackwardLoop | LateAngle
+@dataclass(frozen=True)
+class DraggedCrossing:
+    """The friction torque against which a gap is crossed beside drag, with its standard deviation [N·m].
+
+    `rms_arcsec` : of what the record's step of the gap is off a sharp one behind that friction.
+    """
+
+    friction_Nm: float
+    std_Nm: float
+    rms_arcsec: float
+
+
+BrokenLimit = (
+    Slip | FarSlope | NegativeGap | MissedLevel | BackwardLoop | LateAngle | DraggedCrossing
+)
 """What no gear does, or no explanation may."""
 Structure = tuple[UnnamedForm, ...] | Trace | BrokenLimit
 """Several forms at once are of one channel."""

@@ -14,4 +14,4 @@ DESIGN_FAULTS = (
     StiffnessValueError,
     BearingPlayDomainError,
 )
-"""They cost that design a figure, or all. A NestingError is none: it ends the study."""
+"""They cost that design a figure, or all. A NestingError is none: no figure of the design is kept then."""

@@ -53,11 +53,15 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Figures by result.json key, the faults for which some or all are missing, and seconds of work."""
+    """Figures by result.json key, the faults for which some or all are missing, and seconds of work.
+
+    `contradicted` : whether the fault is a NestingError, so that a model of the program is wrong.
+    """
 
     figures: Mapping[str, float] = field(default_factory=dict)
     faults: tuple[str, ...] = ()
     seconds: float = 0.0
+    contradicted: bool = False
 
     @property
     def reason(self) -> str:
@@ -73,9 +77,7 @@ def outcome_of(stored: Mapping[str, Any]) -> Outcome:
 def evaluate(task: Task) -> Outcome:
     """Build and solve one design; only our own errors become a fault of it.
 
-    Raises
-    ------
-    NestingError : one of two models is wrong, so no row is to be trusted; it names the design's values.
+    A NestingError leaves the design without figures: one of two models of it is wrong.
     """
     began = time.perf_counter()
     try:
@@ -84,7 +86,7 @@ def evaluate(task: Task) -> Outcome:
     except DesignError as fault:
         found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
     except NestingError as fault:
-        raise fault.at(task.values) from None
+        found = Outcome(faults=(str(fault),), contradicted=True)
     except DESIGN_FAULTS as fault:
         found = Outcome(faults=(str(fault),))
     return replace(found, seconds=time.perf_counter() - began)

@@ -36,8 +36,12 @@ class Check:
 
 @dataclass(frozen=True)
 class Verified:
-    """A design's checks, or why the solid model gave none."""
+    """A design's checks, or why the solid model gave none.
+
+    `contradicted`: it gave none because the models contradict each other.
+    """
 
     slot: int
     checks: tuple[Check, ...]
     reason: str = ""
+    contradicted: bool = False

@@ -45,12 +45,7 @@ DIED = SolidAnswer(Outcome(faults=(WORKER_DIED,)), passing=True)
 
 
 def solid_answer(task: Task, rim: bool) -> SolidAnswer:
-    """One design by the solid model; `rim`: the lobes and the ellipse too.
-
-    Raises
-    ------
-    NestingError : one of two models is wrong; it names the design's values.
-    """
+    """One design by the solid model; `rim`: the lobes and the ellipse too."""
     try:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
@@ -59,7 +54,7 @@ def solid_answer(task: Task, rim: bool) -> SolidAnswer:
         found = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
         return SolidAnswer(Outcome(_figures(design, found)), found.passing)
     except NestingError as fault:
-        raise fault.at(task.values) from None
+        return SolidAnswer(Outcome(faults=(str(fault),), contradicted=True))
     except NotFoundError as fault:
         return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
     except (*DESIGN_FAULTS, MemoryError) as fault:
@@ -125,7 +120,7 @@ def checked(row: Row, solid: Outcome, solver: Solver) -> Verified:
         Check(k, fast[k], _bounds(fast, k, K_b), solid.figures[k], _bounds(solid.figures, k, K_b))
         for k in keys
     )
-    return Verified(row.slot, checks, solid.reason)
+    return Verified(row.slot, checks, solid.reason, solid.contradicted)
 
 
 def _bounds(figures: Mapping[str, float], key: str, K_b: str) -> tuple[float, float] | None:

@@ -84,6 +84,8 @@ DOING: Mapping[DoingKind, str] = {
     "between_positions": "repeat the sweep at wave generator angles half way between those measured, in "
     "mixed order",
     "more_cycles": f"{FURTHER_CYCLES} and repeat the sweep",
+    "slower": f"repeat the sweep at {SLOWER} of the rate of torque: the gap is then crossed nearer to the "
+    "friction's torque, and what drag adds is smaller",
     "compare_channels": f"{COMPARE}the effect of a late reading is then {SLOWER} as large",
     "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then {SLOWER} as wide, that of "
     "a torque cell with hysteresis as wide as before",

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.absurd_size import slope_words
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import (
     BackwardLoop,
+    DraggedCrossing,
     FarSlope,
     FormKind,
     LateAngle,
@@ -128,6 +129,13 @@ def words_of(structure: Structure, channel: str) -> str:
             return _backward(structure)
         case LateAngle():
             return LATE_ANGLE[structure.kind].format(structure.time_s, structure.std_s)
+        case DraggedCrossing():
+            friction = f"{structure.friction_Nm:.3g} ± {structure.std_Nm:.1g} N·m"
+            return (
+                f"the gap is crossed against friction of {friction}, and the later the quicker the torque: "
+                "drag ahead of the teeth that grows with the speed, for example from stiff grease. It looks "
+                "like more friction, hardening, a lag or another gap, so none of them is named"
+            )
         case _:
             assert_never(structure)
 

@@ -29,7 +29,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.output_folder import folder_of
         from flexspline.results.records import as_json
         from flexspline.results.study.answer import evaluated, study_answer
-        from flexspline.results.study.failures import nothing_built
+        from flexspline.results.study.failures import contradiction, nothing_built
         from flexspline.results.study.record import words
 
         asked, attached = _read(file)
@@ -37,8 +37,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         result = evaluated(asked, folder)
         record = study_answer(result, folder, attached)
         show(as_json(record) if json else words(result, record), json)
-        if nothing := nothing_built(result):
-            raise ComputationError(nothing)
+        if failed := contradiction(result) or nothing_built(result):
+            raise ComputationError(failed)
 
 
 def _read(file: Path) -> tuple[Study, tuple[Attachment, ...]]:

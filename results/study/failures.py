@@ -81,6 +81,17 @@ def failure_lines(result: StudyResult) -> Iterator[str]:
         yield f"  {more}"
 
 
+def contradiction(result: StudyResult) -> str:
+    """Where two models of a design contradict each other: how many such designs, and the first; else ""."""
+    found = {r.slot: r.outcome.reason for r in result.rows if r.outcome.contradicted}
+    found |= {v.slot: v.reason for v in result.verified if v.contradicted}
+    if not found:
+        return ""
+    slot, reason = next(iter(found.items()))
+    count = f"{len(found)} of {len(result.rows)} designs"
+    return f"two models contradict each other in {count}; design {slot}: {reason}"
+
+
 def nothing_built(result: StudyResult) -> str:
     """Where no design has the figures asked for: the commonest cause; "" where one has."""
     if result.built or not result.rows:

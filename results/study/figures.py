@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.study.best_figure import write_best
-from flexspline.results.study.labels import axis_label, entry, lines_of
+from flexspline.results.study.labels import axis_label, entry, in_the_table, lines_of
 from flexspline.results.study.sweep_figure import is_sweep, write_sweep
 from flexspline.results.study.tolerance_figure import write_scatter
 from flexspline.results.style import (
@@ -116,7 +116,10 @@ def write_parallel(path: Path, result: StudyResult) -> None:
 
     limits = result.study.file.constraint
     shown = [*result.shown, *(k for k in limits if k not in result.shown)][: MOST_AXES - 1]
-    keys = list(result.built[0].values)[: max(1, MOST_AXES - len(shown))]
+    varied = list(result.built[0].values)
+    keys = varied[: max(1, MOST_AXES - len(shown))]
+    rest = len(varied) - len(keys)
+    more = f"; {in_the_table(rest, 'dimension')}" if rest else ""
     columns = [np.array([r.values[k] for r in result.built]) for k in keys]
     columns += [_values(result.built, k) for k in shown]
     names = keys + shown
@@ -160,7 +163,7 @@ def write_parallel(path: Path, result: StudyResult) -> None:
             0.08, 0.955,
             f"{'red: the best; ' if best else ''}colour: {first} from low (dark) to high (bright)"
             f"{'; grey: not allowed' if off.any() else ''}"
-            f"{'; bar: what a constraint allows' if limits else ''}",
+            f"{'; bar: what a constraint allows' if limits else ''}{more}",
             fontsize=9.5, color=INK,
         )  # fmt: skip
         save_png(figure, path)

@@ -84,6 +84,11 @@ def axis_label(key: str) -> str:
     return f"{words} in {q.unit}" if q.unit else words
 
 
+def in_the_table(count: int, what: str) -> str:
+    """What a chart has no room for."""
+    return f"{count} more {what}{'s' * (count > 1)} in study.csv"
+
+
 def lines_of(key: str) -> str:
     """A key under a narrow column: symbol or wrapped words, the unit below."""
     q = entry(key)

@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
 from flexspline.results.peaks import BORDER
-from flexspline.results.study.labels import at_border, axis_label, entry
+from flexspline.results.study.labels import at_border, axis_label, entry, in_the_table
 from flexspline.results.study.why import allowed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -23,6 +23,8 @@ WIDE_IN, PANEL_IN = 8.0, 1.75
 """Inches: the figure's width, a panel's height."""
 TITLE_IN, LEGEND_IN, AXIS_IN = 0.65, 0.25, 0.55
 """Inches: room for a panel's title, for the legend above all and the axis below all panels."""
+LINE_IN = 0.2
+"""Inches: a further line under the axis."""
 TITLE_LETTERS = 75
 """In a line of a panel's title, of 10 points, above WIDE_IN's panel."""
 MARGIN = 0.12
@@ -37,21 +39,23 @@ def is_sweep(result: StudyResult) -> bool:
 
 
 def swept_figures(result: StudyResult) -> tuple[str, ...]:
-    """What is shown over the dimension: objectives, constraints by how many designs break them, the rest."""
+    """Figures over the dimension: objectives, constraints by how many designs break them, the rest."""
     limits = result.study.file.constraint
 
     def keeping(name: str) -> int:
         return sum(limits[name].excess(r.outcome.figures[name]) <= 0 for r in result.built)
 
     by_use = [*result.study.file.objective, *sorted(limits, key=keeping), *result.shown]
-    return tuple(dict.fromkeys(by_use))[:MOST_PANELS]
+    return tuple(dict.fromkeys(by_use))
 
 
 def write_sweep(path: Path, result: StudyResult) -> None:
-    """A panel for each of `swept_figures`; the curve is broken where a design could not be built."""
-    shown = swept_figures(result)
+    """A panel for each of the first `swept_figures`; a curve is broken where a design was not built."""
+    figures = swept_figures(result)
+    shown, rest = figures[:MOST_PANELS], figures[MOST_PANELS:]
     (key,) = result.study.file.vary
-    high = LEGEND_IN + len(shown) * (TITLE_IN + PANEL_IN) + AXIS_IN
+    under = [axis_label(key), *([in_the_table(len(rest), "figure")] if rest else [])]
+    high = LEGEND_IN + len(shown) * (TITLE_IN + PANEL_IN) + AXIS_IN + LINE_IN * len(under[1:])
     with styled():
         figure = new_figure(WIDE_IN, high)
         for i, name in enumerate(shown):
@@ -60,7 +64,7 @@ def write_sweep(path: Path, result: StudyResult) -> None:
             _panel(axes, result, key, name)
             if i + 1 < len(shown):
                 axes.tick_params(labelbottom=False)
-        figure.axes[-1].set_xlabel(axis_label(key))
+        figure.axes[-1].set_xlabel("\n".join(under))
         named = {
             n: h for a in figure.axes for h, n in zip(*a.get_legend_handles_labels(), strict=True)
         }

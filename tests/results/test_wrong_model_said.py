@@ -1,8 +1,8 @@
-"""Two models of one part that contradict each other: no command answers, and each says which two."""
+"""Two models of one part that contradict each other: no command trusts either, and each says which two."""
 
 from __future__ import annotations
 
-import re
+import csv
 from pathlib import Path
 
 import pytest
@@ -10,10 +10,12 @@ from changed_text import changed_text
 from example_files import EXAMPLES
 from in_process import flexspline
 from study_bench import TWO_WALLS, WALL, threads
+from typer.testing import CliRunner
 from wrong_models import stiffen_solid_model, swap_bodies
 
 from flexspline import FlexsplineError, load_design, stiffness
 from flexspline.pipeline.study import run
+from flexspline.results.cli import app
 from flexspline.results.studio.questions import answer
 from flexspline.results.studio.worker import Fault
 
@@ -74,12 +76,17 @@ def test_a_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file, out = tmp_path / "walls.toml", tmp_path / "out"
     text = TWO_WALLS.replace("xb1-40.toml", str(EXAMPLES / "xb1-40.toml"))
     file.write_text(f"{text}evaluations = 2\n", encoding="utf-8")
-    done = flexspline("study", file, "--out", out, folder=out)
-    assert done.word == "failed"
-    named = f"flexspline: {re.escape(str(file))}: design with {WALL} = 0[.]\\d+: "
-    assert re.match(named, done.said[0])  # of its two designs, whichever is done first
-    assert done.said[0].endswith(END)
-    assert "study.csv" not in done.written
+    done = CliRunner().invoke(app, ["study", str(file), "--out", str(out)])
+    assert done.exit_code == 1
+    last = done.stderr.splitlines()[-1]
+    told = f"flexspline: {file}: two models contradict each other in 2 of 2 designs; design 0: "
+    assert last.startswith(told)
+    assert last.endswith(END)
+    assert (out / "report.html").exists()
+    with (out / "study.csv").open(encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
+    assert [float(row[WALL]) for row in rows] == [0.38, 0.42]
+    assert all(row["reason"].endswith(END) for row in rows)
 
 
 @pytest.mark.parametrize("question", ["torsion", "K_b_lobes", "first K_b_lobes"])

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, c
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.head import with_unit
+from flexspline.pipeline.diagnosis.measurement.number_text import number_of
 from flexspline.pipeline.diagnosis.measurement.time_form import ALL, is_parted
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_day, is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import (
@@ -53,6 +54,7 @@ def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColum
     if counts_per_turn is not None and counts_per_turn not in COUNTS_PER_TURN:
         reason = f"--counts-per-turn = {counts_per_turn:g}: must be {COUNTS_PER_TURN}"
         raise MeasurementError(grid.path, None, reason)
+    _refuse_numbers(grid)
     _refuse_parted_time(grid)
     chosen = _chosen(grid)
     counted = [grid.head[at] for at, name in chosen if name.unit == COUNTS]
@@ -61,6 +63,15 @@ def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColum
         reason = f"--counts-per-turn is of one column in counts; here {many}"
         raise MeasurementError(grid.path, grid.head_line, reason)
     return tuple(_read(grid, at, name, counts_per_turn) for at, name in chosen)
+
+
+def _refuse_numbers(grid: CellGrid) -> None:
+    if all(number_of(head, ".") is not None for head in grid.head if head):
+        reason = (
+            "numbers where the header belongs; write the columns' names above them, such as "
+            "torque_Nm,angle_arcsec"
+        )
+        raise MeasurementError(grid.path, grid.head_line, reason)
 
 
 def _refuse_parted_time(grid: CellGrid) -> None:

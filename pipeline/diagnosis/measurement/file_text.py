@@ -41,12 +41,12 @@ class FileText:
     encoding: str
 
 
-SINGLE_BYTE = ("cp1252", "cp1250")
-"""Windows' code pages of western and central Europe; nearly any bytes are text in both."""
+CODE_PAGES = ("cp1252", "cp1250", "gb18030", "cp932")
+"""Of Windows in western and central Europe, China and Japan; nearly any bytes are text in the first two."""
 
 
 def texts_of(path: Path, raw: bytes) -> tuple[FileText, ...]:
-    """UTF-8 with or without mark, UTF-16 and UTF-32; else each of `SINGLE_BYTE` that the bytes are text in.
+    """UTF-8 with or without mark, UTF-16 and UTF-32; else each of `CODE_PAGES` that the bytes are text in.
 
     Raises
     ------
@@ -77,14 +77,14 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
     except UnicodeDecodeError:
         pass
     found, unread = [], 0
-    for codec in SINGLE_BYTE:
+    for codec in CODE_PAGES:
         try:
             found.append(FileText(raw.decode(codec), codec))
         except UnicodeDecodeError as error:
             unread = max(unread, error.start)
     if not found:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
-        known = joined(SINGLE_BYTE, "or")
+        known = joined(CODE_PAGES, "or")
         reason = f"byte {byte:#04x} is not text in UTF-8, {known}; save the file as UTF-8"
         raise MeasurementError(path, line, reason)
     return tuple(found)

@@ -14,7 +14,7 @@ class ReadAs:
     Attributes
     ----------
     columns : those that are read, in the file's order. ignored : heads of the others. empty : heads of
-        columns without any value. encoding : "UTF-8", "UTF-16", "cp1252", "cp1250", "xlsx".
+        columns without any value. encoding : "UTF-8", "UTF-16", "xlsx" or a code page.
     separator : in words.
     decimal_mark : "." or ",". head_line : of the file. unit_row : whether units stand below the head.
     began : the first row's date and time, "" where time is no date. sha256 : of the file's bytes.

@@ -162,9 +162,9 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
     )
     reason = f"column {', '.join(missing)} is missing for {kind}"
     heads = [h for h in table.read_as.heads if h][:HEADS_SHOWN]
-    raise table.refuse(
-        None, f"{reason}; the header in line {table.read_as.head_line} has: {', '.join(heads)}"
-    )
+    has = f"the header in line {table.read_as.head_line} has: {', '.join(heads)}"
+    parted = "; separate the columns by commas, semicolons or tabs" if len(heads) == 1 else ""
+    raise table.refuse(None, f"{reason}; {has}{parted}")
 
 
 def _sweep(as_read: MeasuredTable) -> Sweep:

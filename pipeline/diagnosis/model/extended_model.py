@@ -51,8 +51,8 @@ class ExtendedModel:
 
         Raises
         ------
-        ChannelError : a channel that a cause of the model needs is missing, is not finite, or
-            is not as long as the torque.
+        ChannelError : a channel that a cause of the model needs is missing, holds no finite numbers, or
+            is not as long as the torque; or time runs backwards.
         """
         torque = _channel("torque_Nm", torque_Nm, torque_Nm)
 
@@ -70,6 +70,8 @@ class ExtendedModel:
             maybe("input_angle_deg", input_angle_deg),
             exact=True,
         )
+        if history.time_s is not None and (np.diff(history.time_s) < 0).any():
+            raise ChannelError("time_s", "runs backwards")
         for cause_id, elements in self.elements.items():
             for channel in channels_needed(known_causes()[cause_id], elements):
                 if getattr(history, channel) is None:
@@ -115,7 +117,10 @@ def _channel(
     name: str, values: Sequence[float] | np.ndarray, torque: Sequence[float] | np.ndarray
 ) -> np.ndarray:
     """The values as numbers (n,), as many as torques."""
-    found, rows = np.atleast_1d(np.asarray(values, float)), np.size(torque)
+    try:
+        found, rows = np.atleast_1d(np.asarray(values, float)), np.size(torque)
+    except (TypeError, ValueError):
+        raise ChannelError(name, "must hold numbers, one for each row") from None
     if found.ndim != 1 or len(found) != rows:
         raise ChannelError(name, f"has the shape {found.shape}, the torque has {rows} values")
     if not np.isfinite(found).all():

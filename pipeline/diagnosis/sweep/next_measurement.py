@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.outcome import Aim, Doing, NextMeasurement
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.rated_limit import WORTH_SHARE, within_rated
-from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
+from flexspline.pipeline.diagnosis.structure import BackwardLoop, DraggedCrossing, LateAngle
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.held_out_splits import rate_range, whole_levels
@@ -208,8 +208,10 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     return NextMeasurement(best.vary, aim, (cause, *rivals), best.doing, separation=best.separation)
 
 
-def after_late(late: BackwardLoop | LateAngle) -> NextMeasurement:
-    """What tells more of a reading that comes late, or of a torque cell with a hysteresis."""
+def after_late(late: BackwardLoop | LateAngle | DraggedCrossing) -> NextMeasurement:
+    """What tells more of a reading that comes late, of drag, or of a torque cell with a hysteresis."""
+    if isinstance(late, DraggedCrossing):
+        return NextMeasurement("torque_rate", "find_structure", doing=Doing("slower"))
     if isinstance(late, LateAngle):
         return NextMeasurement("torque_rate", "find_structure", doing=Doing("compare_channels"))
     if late.grows is False:

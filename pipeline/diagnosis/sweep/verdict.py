@@ -12,7 +12,12 @@ from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
-from flexspline.pipeline.diagnosis.structure import BackwardLoop, FarSlope, LateAngle
+from flexspline.pipeline.diagnosis.structure import (
+    BackwardLoop,
+    DraggedCrossing,
+    FarSlope,
+    LateAngle,
+)
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import (
     PreparedSweep,
     TooFewRowsError,
@@ -35,6 +40,7 @@ from flexspline.pipeline.diagnosis.sweep.residual.unexplained import (
     unexplained_of,
 )
 from flexspline.pipeline.diagnosis.sweep.rig_faults.backward_loops import backward_of
+from flexspline.pipeline.diagnosis.sweep.rig_faults.dragged_crossing import dragged_crossing_of
 from flexspline.pipeline.diagnosis.sweep.rig_faults.late_angle import late_angle_of
 from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 
@@ -43,14 +49,14 @@ from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 class JudgedSweep:
     """A record, its best explanation, what that leaves, and the verdict.
 
-    `misread` : a reading that comes late, where that is what the record shows.
+    `misread` : a reading that comes late, or drag that looks like one, where the record shows it.
     """
 
     sweep: Sweep
     explained: ExplainedSweep
     left: ResidualStructure
     decision: Decision
-    misread: BackwardLoop | LateAngle | None
+    misread: BackwardLoop | LateAngle | DraggedCrossing | None
 
 
 def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
@@ -123,13 +129,18 @@ def _on_causes(
 
 def _misread(
     prepared: PreparedSweep, explained: ExplainedSweep, decision: Decision
-) -> BackwardLoop | LateAngle | None:
-    """A reading that comes late, where something was found that may be it."""
+) -> BackwardLoop | LateAngle | DraggedCrossing | None:
+    """A reading that comes late, or drag, where something was found that may be it."""
     found = None
     # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
     # curve's, a few loads of a gear that does nothing seem to
     if decision.unexplained:
         found = backward_of(prepared, explained)  # rig_faults/backward_loops.py
     if found is None and (decision.causes or decision.unexplained):
-        return late_angle_of(prepared, explained)  # rig_faults/late_angle.py
+        late = late_angle_of(prepared, explained)  # rig_faults/late_angle.py
+        if late is not None:
+            return late
+        return dragged_crossing_of(
+            prepared, explained, decision.causes
+        )  # rig_faults/dragged_crossing.py
     return found

@@ -53,7 +53,7 @@ BAD = {
     "a strange unit": (rows("torque_lbf,angle_arcsec", *GOOD), "column torque_lbf: accepted are"),
     "no unit": (rows("torque,angle_arcsec", *GOOD), "column torque: accepted are"),
     "fields missing": (rows("torque_Nm,angle_arcsec", *GOOD, "0.5"), ":42: 1 field where the header has 2"),
-    "wrong encoding": (b"torque_Nm,angle_arcsec,\x81\n", "not text in UTF-8, cp1252 or cp1250"),
+    "wrong encoding": (b"torque_Nm,angle_arcsec,\x81\n", "not text in UTF-8, cp1252, "),
     "half of sixteen-bit text": ("torque_Nm,angle_arcsec\n".encode("utf-16")[:-1], "is not; save the file"),
     "a NUL byte": (rows("torque_Nm,angle_arcsec", "0.5,\0"), "NUL"),
     "an empty file": (b"", "no header line"),

@@ -78,6 +78,7 @@ def test_charts_of_designs_can_be_read(draw, tmp_path: Path) -> None:
 
 
 HALF_SEAT, MASS = "wave_generator_peak_half_seat_mises_MPa", "flexspline_mass_g"
+LENGTH_OF_PART, SHAFT_MASS = "flexspline_length_mm", "shaft_mass_g"
 
 
 def swept(method: str = "grid", more: str = "") -> StudyResult:
@@ -112,6 +113,34 @@ def test_a_sweep_s_curves_can_be_read(tmp_path: Path) -> None:
     with drawn_figures() as figures:
         write_sweep(tmp_path / "sweep.png", swept())
     assert [faults(f) for f in figures] == [[]]
+
+
+def test_a_sweep_says_how_many_figures_it_leaves_out(tmp_path: Path) -> None:
+    result = swept()
+    more = {LENGTH_OF_PART: 30.0, SHAFT_MASS: 80.0}
+    objective = {K: "maximize", **dict.fromkeys(more, "minimize")}
+    file = result.study.file.model_copy(update={"objective": objective})
+    rows = [
+        replace(r, outcome=replace(r.outcome, figures=r.outcome.figures | more))
+        for r in result.rows
+        if r.outcome.figures
+    ]
+    result = replace(result, study=replace(result.study, file=file), rows=tuple(rows))
+    with drawn_figures() as figures:
+        write_sweep(tmp_path / "sweep.png", result)
+    assert [faults(f) for f in figures] == [[]]
+    assert figures[0].axes[-1].get_xlabel().endswith("\n2 more figures in study.csv")
+
+
+def test_parallel_lines_say_how_many_dimensions_they_leave_out(tmp_path: Path) -> None:
+    result = result_of("xb1-40", 0.4, 30)
+    many = {f"shaft.segment[{k}].length_mm": 4.0 for k in range(7)}
+    rows = tuple(replace(r, values=r.values | many) for r in result.rows)
+    with drawn_figures() as figures:
+        write_parallel(tmp_path / "parallel.png", replace(result, rows=rows))
+    assert [faults(f) for f in figures] == [[]]
+    (head,) = (t.get_text() for t in figures[0].texts)
+    assert head.endswith("; 2 more dimensions in study.csv")
 
 
 def test_of_one_dimension_each_figure_is_a_curve_with_its_limit_and_the_best(

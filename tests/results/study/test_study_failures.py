@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 from example_files import EXAMPLES
@@ -12,9 +13,16 @@ from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.figures import USUAL_FIGURES
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.verified import Verified
 from flexspline.results.cli import app
 from flexspline.results.report.payload import payload_of
-from flexspline.results.study.failures import TOLD, causes, failure_lines, nothing_built
+from flexspline.results.study.failures import (
+    TOLD,
+    causes,
+    contradiction,
+    failure_lines,
+    nothing_built,
+)
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
@@ -86,6 +94,16 @@ def test_many_causes_are_cut_and_counted() -> None:
 def test_no_word_of_constraints_where_there_are_none() -> None:
     result = result_of(Outcome({"K_b_Nm_per_rad": 1.0}))
     assert "constraint" not in words(result, summary(result) | {"files": []})
+
+
+def test_a_contradiction_of_the_models_is_told_wherever_it_was_met() -> None:
+    """In a row or where the best were verified; a fault of another kind is none."""
+    failed = Outcome(faults=("K_b: no mesh",))
+    assert not contradiction(result_of(failed))
+    in_a_row = result_of(failed, Outcome(faults=("two are wrong",), contradicted=True))
+    assert contradiction(in_a_row).endswith("in 1 of 2 designs; design 1: two are wrong")
+    verified = replace(result_of(failed), verified=(Verified(0, (), "solid is wrong", True),))
+    assert contradiction(verified).endswith("in 1 of 1 designs; design 0: solid is wrong")
 
 
 def test_a_study_in_which_nothing_is_built_names_the_commonest_cause() -> None:

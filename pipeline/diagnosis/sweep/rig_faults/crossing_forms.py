@@ -60,7 +60,7 @@ def softly(history: History) -> list[Tried]:
     """Crossed at zero, by teeth that take up their load one after another: alike in both senses."""
     torque = history.torque_Nm
     widths = np.geomspace(*SOFT_ENDS, SOFT_STEPS) * history.largest_Nm
-    return [Tried("soft", width, _soft(torque, width)) for width in widths.tolist()]
+    return [Tried("soft", width, soft_side(torque, width)) for width in widths.tolist()]
 
 
 def behind_friction(
@@ -112,7 +112,8 @@ def _sharp(torque_Nm: np.ndarray) -> Form:
     return lambda more: np.sign(torque_Nm + more)
 
 
-def _soft(torque_Nm: np.ndarray, width_Nm: float) -> Form:
+def soft_side(torque_Nm: np.ndarray, width_Nm: float) -> Form:
+    """Of teeth that take up their load one after another."""
     return lambda more: np.tanh((torque_Nm + more) / width_Nm)
 
 

@@ -60,6 +60,8 @@ READ: dict[str, bytes] = {
         + "".join(f"0\t{m}\t{a}\t{t}\t\n" for m, a, t in ROWS)).encode(),
     "Excel's first line": ("sep=;\n" + GERMAN + body(";", comma)).encode("utf-8-sig"),
     "Czech Excel": ('Krouticí moment [Nm];Úhel ["];Čas [s]\n' + body(";", comma)).encode("cp1250"),
+    "Chinese Excel": ("扭矩(N·m),角度(arcsec),时间(s)\n" + body()).encode("gb18030"),
+    "Japanese Excel": ("トルク[Nm],角度[arcsec],時間[s]\n" + body()).encode("cp932"),
     "UTF-8 with mark": (OURS + body()).encode("utf-8-sig"),
     "UTF-16, little end first":
         ("\ufeff" + GERMAN.replace(";", "\t") + body("\t", comma)).encode("utf-16-le"),
@@ -316,13 +318,27 @@ def test_an_encoder_that_passes_a_full_turn_is_told_from_a_wrong_unit(tmp_path: 
     [(b"\xd0\xcf\x11\xe0" + bytes(600), "old Excel file"), (b"TDSm\0\0", "TDMS"), (b"PK\x03\x04zip",
         "not a readable .xlsx"),
      (b"\xff\xfet", "begins as UTF-16"),
-     (b"torque\x81,angle\n", "not text in UTF-8, cp1252 or cp1250"),
-    (b"\xe7,\x81\n", "byte 0x81 is not text in UTF-8, cp1252 or cp1250"),
+     (b"torque\x81,angle\n", "not text in UTF-8, cp1252, cp1250, gb18030 or cp932"),
+    (b"\xe7,\x81\n", "byte 0x81 is not text in UTF-8, cp1252, cp1250, gb18030 or cp932"),
          (b"\x1f\x8b\x08", "compressed")],
 )  # fmt: skip
 def test_other_files_are_named(begin: bytes, needle: str, tmp_path: Path) -> None:
     with pytest.raises(MeasurementError, match=needle):
         read(tmp_path, begin)
+
+
+@pytest.mark.parametrize(
+    ("text", "needle"),
+    [
+        (body(), "write the columns' names above them"),
+        ("torque_Nm|angle_arcsec|time_s\n" + body("|"), "separate the columns by commas"),
+    ],
+)
+def test_a_header_without_names_is_answered_with_what_to_write(
+    text: str, needle: str, tmp_path: Path
+) -> None:
+    with pytest.raises(MeasurementError, match=needle):
+        read(tmp_path, text.encode())
 
 
 def test_what_is_read_is_said(tmp_path: Path) -> None:
