@@ -88,7 +88,7 @@ class Page:
     def __init__(
         self, browser: Browser, url: str = "", init: str = UNSMOOTHED, **settings: Any
     ) -> None:
-        shape = {"viewport": VIEWPORT, "device_scale_factor": 0.5, **settings}
+        shape = {"viewport": VIEWPORT, **settings}
         self.context = browser.new_context(accept_downloads=True, **shape)
         self.context.add_init_script(init)
         self.tab: BrowserPage = self.context.new_page()
