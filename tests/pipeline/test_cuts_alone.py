@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from flexspline.fea.solid.torsion_field import TorsionSolver
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline import solid_torsion
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.lobes_with_holes import lobes_with_holes
@@ -38,15 +38,14 @@ SHAFTS = {"holes": CUP, "keyway": KEYED}
 ALONE = "superposition"
 
 
-def shaft(folder: Path, design: Design = CUP) -> PartModel:
-    return AnalysisContext(design, Cache(folder), Progress()).part("shaft")
+def part_of(folder: Path, design: Design, part: PartName = "shaft") -> PartModel:
+    return AnalysisContext(design, Cache(folder), Progress()).part(part)
 
 
-@cache
-def of_all_the_field(folder: Path, name: str = "holes") -> Stiffness:
-    """Solved once for all tests of this file."""
-    by_name = SHAFTS[name].changed({"solver.model": "solid"})
-    return solid_torsion.twisted(shaft(folder, by_name), 0.01).stiffness
+def of_all_the_field(model: PartModel) -> Stiffness:
+    by_name = model.context.design.changed({"solver.model": "solid"})
+    context = replace(model.context, design=by_name)
+    return solid_torsion.twisted(context.part(model.name), 0.01).stiffness
 
 
 @pytest.mark.parametrize("name", SHAFTS)
@@ -54,8 +53,8 @@ def test_a_shaft_is_known_better_by_the_same_mesh(
     name: str, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(solid_torsion, "COARSE_TOLERANCE", inf)  # else its first mesh is coarser
-    found = solid_torsion.twisted(shaft(suite_cache, SHAFTS[name]), 0.01).stiffness
-    whole = of_all_the_field(suite_cache, name)
+    model = part_of(suite_cache, SHAFTS[name])
+    found, whole = solid_torsion.twisted(model, 0.01).stiffness, of_all_the_field(model)
     assert ALONE in found.method
     assert ALONE not in whole.method
     assert found.levels[0].elements == whole.levels[0].elements
@@ -77,7 +76,7 @@ def meeting(tmp_path: Path) -> PartModel:
             "shaft.keyway.length_mm": 33.0, "solver.tolerance_pct": 5.0,
         }
     )  # fmt: skip
-    model = shaft(tmp_path, design)
+    model = part_of(tmp_path, design)
     assert model.part.cuts_meet
     return model
 
@@ -105,13 +104,19 @@ def test_holes_that_open_into_the_keyway_have_a_stiffness(meeting: PartModel) ->
     assert ALONE not in solid_torsion.twisted(meeting, 0.05).stiffness.method
 
 
+@pytest.fixture(scope="module")
+def cup_of_all_the_field(suite_cache: Path) -> Stiffness:
+    return of_all_the_field(part_of(suite_cache, CUP, "flexspline"))
+
+
 @pytest.mark.parametrize("fault", ["wall", "none", "contradiction", "little"])
 def test_where_it_fails_all_of_the_field_is_solved(
-    fault: str, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
+    fault: str, cup_of_all_the_field: Stiffness, suite_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve = torsion_field.torsion_and_correction
+    solve, tried = torsion_field.torsion_and_correction, list[object]()
 
     def fails(*given: Any) -> Any:
+        tried.append(given)
         if fault == "wall":
             raise MeshingError("a place is not on the meridian")
         if fault == "none":
@@ -121,10 +126,11 @@ def test_where_it_fails_all_of_the_field_is_solved(
         return solved, replace(correction, lost=share * 1000 * solved.K_energy)
 
     monkeypatch.setattr(torsion_field, "torsion_and_correction", fails)
-    found = solid_torsion.twisted(shaft(suite_cache), 0.01).stiffness  # meshes alone are kept
-    monkeypatch.undo()
+    model = part_of(suite_cache, CUP, "flexspline")  # of which meshes alone are kept
+    found = solid_torsion.twisted(model, 0.01).stiffness
+    assert tried
     assert ALONE not in found.method
-    whole = of_all_the_field(suite_cache)
+    whole = cup_of_all_the_field
     assert found.bounds_Nm_per_rad == pytest.approx(whole.bounds_Nm_per_rad, rel=1e-6)
 
 
@@ -137,7 +143,7 @@ def test_under_the_lobes_it_lies_within_what_all_of_the_field_says(
     supported: bool, tolerance_pct: float, suite_cache: Path
 ) -> None:
     part, alone = (
-        AnalysisContext(WIDE.changed(asked), Cache(suite_cache), Progress()).part("flexspline")
+        part_of(suite_cache, WIDE.changed(asked), "flexspline")
         for asked in (
             {"solver.tolerance_pct": tolerance_pct},
             {"solver.tolerance_pct": AS_VERIFIED_PCT, "solver.model": "solid"},
