@@ -33,18 +33,17 @@ WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 SLOWEST = (
-    "test_cli", "test_specimens", "test_hidden", "test_studio_work", "test_layered", "test_studio_stale",
-    "test_documents", "test_document_commands", "test_without_opengl",
-    "test_studio_process", "test_streams", "test_study_command", "test_enclosed_part",
-    "test_studio_design", "test_hidden_specimens", "test_swept", "test_legibility_diagnosis",
-    "test_estimate_honesty", "test_end_points",
-    "test_studio_widths", "test_cyclic", "test_files", "test_gear_command", "test_contact_on_the_seat",
-    "test_gear_inputs", "test_mesher", "test_studio_reading", "test_ahead_beside_friction",
-    "test_twolevel", "test_kills", "test_model_doubt", "test_no_network", "test_diagnose_rig_files",
+    "test_cli", "test_specimens", "test_lobes_by_torsion", "test_studio_work", "test_swept",
+    "test_units_apart", "test_document_commands", "test_cuts_alone", "test_enclosed_part",
+    "test_scaled_bend", "test_legibility_diagnosis", "test_study_command", "test_studio_design",
+    "test_first_mesh", "test_studio_reading", "test_layered", "test_estimate_honesty", "test_streams",
+    "test_studio_widths", "test_gear_command", "test_studio_process", "test_without_opengl",
+    "test_enclosed_holes", "test_diagnose_command", "test_gear_inputs", "test_backward",
+    "test_studio_stale", "test_unfilleted_shaft", "test_every_cause", "test_wrong_model_said",
 )  # fmt: skip
-"""Files that take twelve seconds of a processor or more, begun first so that no worker is left alone with one
+"""Files that take eight seconds of a processor or more, begun first so that no worker is left alone with one
 at the end. The first makes the run that others read, which begin when it has ended, as waiting is a worker's
-time; the second the solves that the hidden specimens read."""
+time; the second the solves that the hidden specimens read; the third those of `test_cuts_alone`."""
 
 OF_ONE_HELPER = ("test_estimate_honesty", "test_solid_against_axisymmetric")
 """Files that read the same solutions, kept in their process: they go to one worker. Others go by file."""

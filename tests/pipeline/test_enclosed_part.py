@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf
 from pathlib import Path
 
 import pytest
@@ -245,11 +244,13 @@ def test_a_cut_body_that_is_too_far_off_is_not_solved_finely(
 def test_lift_off_of_bodies_far_apart_is_the_same_by_coarse_ratios(
     suite_cache: Path, monkeypatch
 ) -> None:
-    """Each ratio is known to as much as is asked of it, by however many meshes."""
-    part = model(WIDE.changed({"solver.tolerance_pct": 0.3}), suite_cache)
-    coarse = load_cases.CASES["lobes_contact"].bodies(part)
-    monkeypatch.setattr(load_cases, "FAR_HALF_WIDTHS", inf)
+    """A ratio known less well, as of bodies beyond FAR_HALF_WIDTHS, has wider bounds about the same K."""
+    part = model(WIDE.changed({"solver.tolerance_pct": 1.0}), suite_cache)
     fine = load_cases.CASES["lobes_contact"].bodies(part)
+    monkeypatch.setattr(load_cases, "FAR_HALF_WIDTHS", 0.0)
+    monkeypatch.setattr(load_cases, "FAR_BOUNDS_PCT", 2.0)
+    coarse = load_cases.CASES["lobes_contact"].bodies(part)
+    assert coarse.cut.half_width > 2 * fine.cut.half_width
     for a, b in ((coarse.cut, fine.cut), (coarse.whole, fine.whole)):
         assert len(a.levels) <= len(b.levels)
         assert a.lower_Nm_per_rad <= b.upper_Nm_per_rad

@@ -78,10 +78,10 @@ def with_held(monkeypatch: pytest.MonkeyPatch, solve: object) -> None:
 
 
 def test_what_it_misses_is_said(suite_cache: Path, monkeypatch) -> None:
-    with_held(monkeypatch, lambda *_, **__: held(36190.0, 100.0, "no time"))
-    asked = WIDE.changed({"solver.tolerance_pct": 0.5})
+    with_held(monkeypatch, lambda *_, **__: held(36190.0, 200.0, "no time"))
+    asked = WIDE.changed({"solver.tolerance_pct": 1.0})
     found = rim_stiffness(model(asked, suite_cache), "lobes_contact")
-    assert found.half_width > 0.005
+    assert found.half_width > 0.01
     assert found.shortfall.words == f"{TOO_FAR}; with the seat held: no time"
 
 

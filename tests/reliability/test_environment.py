@@ -9,7 +9,6 @@ import threading
 from pathlib import Path
 
 import pytest
-from cad_kernel import why_no_cad
 from example_files import EXAMPLES
 from shell import run
 
@@ -66,7 +65,7 @@ def test_held_signals_wait_and_then_come() -> None:
     assert signal.getsignal(signal.SIGINT) is before
 
 
-@pytest.mark.skipif(bool(why_no_cad()), reason="the CAD kernel cannot be loaded")
+@pytest.mark.cad
 def test_an_interruption_does_not_break_the_loading_of_the_cad_kernel() -> None:
     """It came as "cannot be loaded (initialization failed)", or as a segmentation fault."""
     done = subprocess.run(

@@ -30,9 +30,11 @@ HOLES = 0.003
 @pytest.mark.parametrize(
     "file", ["xb1-40.toml", pytest.param("hat-25.toml", marks=pytest.mark.long)]
 )
-def test_the_free_rim_meets_its_tolerance_and_is_right(file: str, tmp_path: Path, record) -> None:
+def test_the_free_rim_meets_its_tolerance_and_is_right(
+    file: str, suite_cache: Path, record
+) -> None:
     design = load_design(EXAMPLES / file)
-    context = AnalysisContext(design, Cache(tmp_path), Progress())
+    context = AnalysisContext(design, Cache(suite_cache), Progress())
     part = context.part("flexspline")
     found = solid_lobes(part, supported=False)
     outline = without_holes(design).part("flexspline").meridian

@@ -154,8 +154,8 @@ def test_header_says_what_a_reader_needs() -> None:
 
 
 def wedge(part: str) -> tuple[TetMesh, Elastic]:
-    """Swept: the same mesh every time."""
-    design = load_design(CUP)
+    """Swept: the same mesh every time. The shaft has no holes: those of the cup take fewer elements."""
+    design = load_design(CUP).changed({"shaft.bolt_count": 0})
     whole = design.part(part)
     mesh = swept_mesh(whole, sector_of(whole, "torsion").degrees, first_spec(whole))
     assert mesh is not None
@@ -186,7 +186,7 @@ def stiffness_by_calculix(text: str, folder: Path) -> float:
     ("case", "tolerance"),
     [
         # two programs on one mesh; C3D10 integrates with 4 points, we with 11: on curved elements that is
-        # 3e-6 of the cup and 7e-6 of the shaft
+        # 3e-6 of the cup and 1.7e-5 of the shaft, whose arcs are longer: with edges of 0.6 of that, 1.1e-5
         (lambda: wedge("flexspline"), 3e-5),
         (lambda: wedge("shaft"), 3e-5),
     ],

@@ -22,6 +22,8 @@ pytestmark = pytest.mark.usefixtures("causes_only")
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 WITH = "b"
+STEP_S, CYCLE = 20.0, 75
+"""Between rows, and rows of a cycle."""
 HEAD = "unit,time_s,cycle,torque_Nm,temperature_C,angle_arcsec"
 
 
@@ -40,7 +42,7 @@ def outcome_of(
     lines = [HEAD]
     for unit, angle in angles.items():
         lines += [
-            f"{unit},{10 * i},{i // 150 + 1},{torque[i]:.4f},{warm[i]:.2f},{angle[i]:.3f}"
+            f"{unit},{STEP_S * i},{i // CYCLE + 1},{torque[i]:.4f},{warm[i]:.2f},{angle[i]:.3f}"
             for i in range(len(torque))
         ]
     path = folder / "m.csv"
@@ -48,20 +50,21 @@ def outcome_of(
     return diagnose_file(DESIGN, path, 31312, 43275).outcome
 
 
-TORQUE = 2.0 * np.interp(np.arange(900) % 150, [0, 40, 110, 149], [0, 1, -1, 0])
-WARM = 20.0 + 8.0 * np.sin(np.arange(900) / 140)
+TIME_S = STEP_S * np.arange(6 * CYCLE)
+TORQUE = 2.0 * np.interp(np.arange(6 * CYCLE) % CYCLE, [0, 20, 55, CYCLE - 1], [0, 1, -1, 0])
+WARM = 20.0 + 8.0 * np.sin(TIME_S / 1400)
 
 
 def angle_of(effect: str | None, rng: np.random.Generator) -> np.ndarray:
     """A gear of 11.35 arcsec per N·m and a gap of 72 arcsec, with one effect or none."""
     gap = 72.0 - 0.6 * (WARM - 20) * (effect == "thermal_clearance")
-    angle = 11.35 * TORQUE + gap / 2 * np.sign(TORQUE) + rng.normal(0, 0.3, 900)
+    angle = 11.35 * TORQUE + gap / 2 * np.sign(TORQUE) + rng.normal(0, 0.3, len(TORQUE))
     if effect == "friction_hysteresis":
         angle -= 5.0 / 0.8 * friction(TORQUE, 0.8)
     if effect == "series_compliance":
         angle += 0.2 * 11.35 * TORQUE
     if effect == "sensor_drift":
-        angle += 12.0 * np.arange(900) * 10 / 3600
+        angle += 12.0 * TIME_S / 3600
     return angle
 
 
@@ -157,12 +160,12 @@ def test_a_gap_far_from_the_simulated_one_is_that_unit_s(tmp_path: Path) -> None
 
 
 def test_one_unit_that_is_read_late_is_the_answer(tmp_path: Path) -> None:
-    """Its angle channel has a filter of 40 s, four rows: all rows made a soft wind-up and friction of it."""
+    """Its angle channel has a filter of 40 s, two rows: all rows made a soft wind-up and friction of it."""
     rng = np.random.default_rng(10)
     angles = {unit: angle_of(None, rng) for unit in "abc"}
     late = angles["c"].copy()
     for i in range(1, len(late)):
-        late[i] = late[i - 1] + (angles["c"][i] - late[i - 1]) * -np.expm1(-10 / 40)
+        late[i] = late[i - 1] + (angles["c"][i] - late[i - 1]) * -np.expm1(-STEP_S / 40)
     outcome = outcome_of(tmp_path, {**angles, "c": late}, TORQUE, WARM)
     assert outcome.verdict == "unknown"
     assert not outcome.causes
