@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 from weakref import finalize
@@ -42,9 +43,11 @@ class PardisoFactors:
             self._iparm[number] = value
         self._iparm[IN_SINGLE] = single
         self._type = np.float32 if single else np.float64
-        self._data, self._columns, self._starts = _upper(matrix, self._type)
+        matrix = _rising(matrix)
+        self._upper = _UpperTriangle.of(matrix)
+        self._data = self._upper.entries(matrix, self._type)
         self.release = finalize(
-            self, _call, self._pt, self._iparm, self._threads, RELEASE, len(self._starts) - 1
+            self, _call, self._pt, self._iparm, self._threads, RELEASE, matrix.shape[0]
         )
         try:
             self._do(ANALYSE_AND_FACTORISE)
@@ -61,10 +64,10 @@ class PardisoFactors:
         ------
         SolveError : as when made; nothing can be solved any more.
         """
-        data, columns, starts = _upper(matrix, self._type)
-        if not (np.array_equal(starts, self._starts) and np.array_equal(columns, self._columns)):
+        matrix = _rising(matrix)
+        if not self._upper.is_of(matrix):
             return False
-        self._data = data
+        self._data = self._upper.entries(matrix, self._type)
         self._do(FACTORISE)
         return True
 
@@ -76,8 +79,10 @@ class PardisoFactors:
         return x.astype(np.float64)
 
     def _do(self, phase: int, b: np.ndarray | None = None, x: np.ndarray | None = None) -> None:
-        matrix = (self._data, self._starts, self._columns)
-        _call(self._pt, self._iparm, self._threads, phase, len(self._starts) - 1, matrix, b, x)
+        matrix = (self._data, self._upper.starts, self._upper.columns)
+        _call(
+            self._pt, self._iparm, self._threads, phase, len(self._upper.starts) - 1, matrix, b, x
+        )
 
 
 def _call(
@@ -119,16 +124,45 @@ def _pointer(value: int) -> Any:
     return ctypes.byref(ctypes.c_int32(value))
 
 
-def _upper(matrix: csr_matrix, to: type) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Entries, columns and starts of rows of the upper triangle, columns rising."""
-    if not matrix.has_sorted_indices:
-        matrix = matrix.sorted_indices()
-    n = matrix.shape[0]
-    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
-    upper = matrix.indices >= rows
-    starts = np.concatenate([[0], np.cumsum(np.bincount(rows[upper], minlength=n))])
-    columns = matrix.indices[upper].astype(np.int32)
-    return matrix.data[upper].astype(to), columns, starts.astype(np.int32)
+def _rising(matrix: csr_matrix) -> csr_matrix:
+    """The matrix with rising columns in each row."""
+    return matrix if matrix.has_sorted_indices else matrix.sorted_indices()
+
+
+@dataclass(frozen=True)
+class _UpperTriangle:
+    """Where a CSR matrix has its entries, and which of them oneMKL takes: those of the upper triangle.
+
+    Attributes
+    ----------
+    all_starts, all_columns : the matrix's. kept : which entries, a mask. columns, starts : of these.
+    """
+
+    all_starts: np.ndarray
+    all_columns: np.ndarray
+    kept: np.ndarray
+    columns: np.ndarray
+    starts: np.ndarray
+
+    @classmethod
+    def of(cls, matrix: csr_matrix) -> _UpperTriangle:
+        """Of a matrix as of `_rising`."""
+        n = matrix.shape[0]
+        rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
+        kept = matrix.indices >= rows
+        starts = np.concatenate([[0], np.cumsum(np.bincount(rows[kept], minlength=n))])
+        columns = matrix.indices[kept].astype(np.int32)
+        return cls(matrix.indptr, matrix.indices, kept, columns, starts.astype(np.int32))
+
+    def is_of(self, matrix: csr_matrix) -> bool:
+        """Whether another matrix has its entries at the same places."""
+        return np.array_equal(matrix.indptr, self.all_starts) and np.array_equal(
+            matrix.indices, self.all_columns
+        )
+
+    def entries(self, matrix: csr_matrix, to: type) -> np.ndarray:
+        """Those of the upper triangle."""
+        return matrix.data[self.kept].astype(to)
 
 
 def _said(error: int, unknowns: int) -> SolveError:

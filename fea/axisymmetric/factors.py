@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from threading import Lock
 
 import numpy as np
@@ -23,13 +24,65 @@ LARGEST_RESIDUAL = 1e-3
 condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.015 to 5."""
 
 
+@dataclass(frozen=True)
+class _FreeEntries:
+    """Which entries of a CSR matrix stand between free unknowns, and where they stand there.
+
+    scikit-fem's `condense` finds that for each matrix: 4.7 of a harmonic's 25 ms (12 000 unknowns), 0.7 here.
+
+    Attributes
+    ----------
+    starts, columns : of the whole matrix. free : (N,) mask.
+    kept : numbers of the entries. free_starts, free_columns : of the matrix of the free unknowns.
+    """
+
+    starts: np.ndarray
+    columns: np.ndarray
+    free: np.ndarray
+    kept: np.ndarray
+    free_starts: np.ndarray
+    free_columns: np.ndarray
+
+    @classmethod
+    def of(cls, matrix: csr_matrix, free: np.ndarray) -> _FreeEntries:
+        rows = np.repeat(np.arange(len(free)), np.diff(matrix.indptr))
+        kept = np.flatnonzero(free[rows] & free[matrix.indices])
+        number = np.cumsum(free) - 1
+        counts = np.bincount(number[rows[kept]], minlength=int(free.sum()))
+        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+        columns = number[matrix.indices[kept]].astype(np.int32)
+        return cls(matrix.indptr, matrix.indices, free, kept, starts, columns)
+
+    def fit(self, matrix: csr_matrix, free: np.ndarray) -> bool:
+        """Whether they are this matrix's."""
+        return (
+            np.array_equal(free, self.free)
+            and np.array_equal(matrix.indptr, self.starts)
+            and np.array_equal(matrix.indices, self.columns)
+        )
+
+    def between(self, matrix: csr_matrix) -> csr_matrix:
+        """The matrix of the free unknowns."""
+        size = len(self.free_starts) - 1
+        entries = (matrix.data[self.kept], self.free_columns, self.free_starts)
+        return csr_matrix(entries, shape=(size, size))
+
+
 class PatternSolver:
     """Of symmetric positive definite systems; an ordering that Pardiso made stays while the places do."""
 
     def __init__(self) -> None:
+        self._entries: _FreeEntries | None = None
         self._lock = Lock()  # factors serve one thread at a time
         self._factors: PardisoFactors | None = None
         self._places: tuple[np.ndarray, np.ndarray] | None = None
+
+    def free_part(self, matrix: csr_matrix, free: np.ndarray) -> csr_matrix:
+        """K between the free unknowns, a mask (N,) of those of `matrix`."""
+        entries = self._entries
+        if entries is None or not entries.fit(matrix, free):
+            entries = self._entries = _FreeEntries.of(matrix, free)
+        return entries.between(matrix)
 
     def solve(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
         """K⁻¹ f of loads (N,) or (N, k).

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from skfem import FacetBasis, LinearForm, MappingAffine, condense
+from skfem import FacetBasis, LinearForm, MappingAffine
 
 from flexspline.fea.axisymmetric.couplings import Couplings
 from flexspline.fea.axisymmetric.factors import PatternSolver, relative_residual
@@ -164,7 +164,7 @@ class HarmonicModel:
         """
         free, u = self.prescribed(wave, fixed)
         matrix = self.stiffness(wave)
-        inside, right = condense(matrix, load, x=u, I=np.flatnonzero(free), expand=False)
+        inside, right = self.solver.free_part(matrix, free), (load - matrix @ u)[free]
         try:
             u[free] = self.solver.solve(inside, right)
         except (RuntimeError, ComputationError) as fault:  # SuperLU's and Pardiso's: it is singular

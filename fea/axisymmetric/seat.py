@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from skfem import condense
 
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, lobe_coefficient
@@ -114,6 +113,6 @@ def responses(
     """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held, and what is `also` fixed."""
     free, _ = model.prescribed(wave, [*model.held("mount"), *(also or [])])
     out = np.zeros_like(loads)
-    inside = condense(model.stiffness(wave), I=np.flatnonzero(free), expand=False)
+    inside = model.solver.free_part(model.stiffness(wave), free)
     out[free] = model.solver.solve(inside, loads[free])
     return out

@@ -10,13 +10,12 @@ import numpy as np
 
 from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
-from flexspline.fea.solid.elements import jacobian_ratio
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
 from flexspline.fea.solid.quadratic import (
     JACOBIAN_RATIO,
-    straightened,
     straightened_inside,
+    straightened_too,
     with_middles,
 )
 from flexspline.fea.solid.snap import snap_to_surfaces
@@ -61,10 +60,10 @@ def quadratic(
     """
     before = inf
     for left in reversed(range(BENT_ROUNDS + 1)):
-        nodes, edges, cells, facets = _curved(points, mesh, surfaces)
+        nodes, ratio, edges, cells, facets = _curved(points, mesh, surfaces)
         n = len(points)
         bent = np.zeros(len(edges), bool)
-        bent[np.unique(cells[jacobian_ratio(nodes, cells) < JACOBIAN_RATIO, 4:]) - n] = True
+        bent[np.unique(cells[ratio < JACOBIAN_RATIO, 4:]) - n] = True
         off = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
         length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
         bent &= off > BENT_SHARE * length
@@ -75,7 +74,7 @@ def quadratic(
         if len(mesh.tets) > most:
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)
-    nodes = straightened(nodes, cells, edges, facets)
+    nodes = straightened_too(nodes, ratio, cells, edges)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
     return LayeredMesh(nodes, cells, facets, facet_patch, names, sector_deg, mesh.facet_surface)
@@ -83,8 +82,8 @@ def quadratic(
 
 def _curved(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Nodes with middle ones, edges, ten-node cells and six-node facets.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes with middle ones, cells' `jacobian_ratio`, edges, ten-node cells and six-node facets.
 
     Middle nodes follow the angle, those of the boundary lie on its surfaces. Within the part edges are
     straight where elements would be bent too far, so that those of its surface may stay.
@@ -95,4 +94,5 @@ def _curved(
     longest = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).max())
     nodes = snap_to_surfaces(nodes, facets, mesh.facet_surface, surfaces, longest)
     nodes[:n] = points
-    return straightened_inside(nodes, cells, edges, facets), edges, cells, facets
+    nodes, ratio = straightened_inside(nodes, cells, edges, facets)
+    return nodes, ratio, edges, cells, facets

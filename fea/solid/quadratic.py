@@ -50,32 +50,49 @@ def straightened(
     ------
     MeshQualityError : straight edges do not help.
     """
-    every = np.ones(len(nodes), bool)
-    nodes = straightened_of(straightened_inside(nodes, cells, edges, facets), cells, edges, every)
-    if jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
-        raise MeshQualityError("elements are badly bent even with straight edges")
-    return nodes
+    return straightened_too(*straightened_inside(nodes, cells, edges, facets), cells, edges)
 
 
 def straightened_inside(
     nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, facets: np.ndarray
-) -> np.ndarray:
-    """The edges that are not on the surface."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes with the edges that are not on the surface straight; and the cells' `jacobian_ratio` (m,)."""
     inside = np.ones(len(nodes), bool)
     inside[facets.ravel()] = False
-    return straightened_of(nodes, cells, edges, inside)
+    return _straightened(nodes, jacobian_ratio(nodes, cells), cells, edges, inside)
 
 
-def straightened_of(
-    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, movable: np.ndarray
+def straightened_too(
+    nodes: np.ndarray, ratio: np.ndarray, cells: np.ndarray, edges: np.ndarray
 ) -> np.ndarray:
-    """Nodes (n, 3), `movable` (n,) middle ones of elements that are bent too far on straight edges."""
+    """Nodes with the edges of the surface straight too, after `straightened_inside`.
+
+    Raises
+    ------
+    MeshQualityError : as `straightened`.
+    """
+    every = np.ones(len(nodes), bool)
+    nodes, ratio = _straightened(nodes, ratio, cells, edges, every)
+    if ratio.min() < JACOBIAN_RATIO:
+        raise MeshQualityError("elements are badly bent even with straight edges")
+    return nodes
+
+
+def _straightened(
+    nodes: np.ndarray, ratio: np.ndarray, cells: np.ndarray, edges: np.ndarray, movable: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes with the `movable` (n,) middle ones of cells that are bent too far on straight edges; `ratio`."""
     n = len(nodes) - len(edges)
-    left, out, mine = movable.copy(), nodes.copy(), cells
-    while len(mine):
-        bad = np.unique(mine[jacobian_ratio(out, mine) < JACOBIAN_RATIO, 4:])
-        bad = bad[left[bad]]
-        out[bad] = out[edges[bad - n]].mean(axis=1)
+    left, nodes, ratio = movable.copy(), nodes.copy(), ratio.copy()
+    while len(bad := _middles_of_bent(cells, ratio, left)):
+        nodes[bad] = nodes[edges[bad - n]].mean(axis=1)
         left[bad] = False
-        mine = cells[np.isin(cells[:, 4:], bad).any(axis=1)]
-    return out
+        changed = np.isin(cells[:, 4:], bad).any(axis=1)
+        ratio[changed] = jacobian_ratio(nodes, cells[changed])
+    return nodes, ratio
+
+
+def _middles_of_bent(cells: np.ndarray, ratio: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Middle nodes of cells that are bent too far, those that are `left` (n,)."""
+    bad = np.unique(cells[ratio < JACOBIAN_RATIO, 4:])
+    return bad[left[bad]]

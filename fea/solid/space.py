@@ -53,7 +53,8 @@ class SolidSpace:
     def volumes(self) -> np.ndarray:
         """Of the elements (m,) mm³, curved as they are."""
         points, weights = tet_rule(4)
-        return determinants(self.curved, points) @ weights
+        curved = self.curved
+        return determinants(curved.doflocs.T, curved.dofs.element_dofs.T, points) @ weights
 
     def areas(self, patch: str) -> np.ndarray:
         """Of a patch's facets (k,) mm², curved as they are; none where the part has no such patch."""

@@ -8,7 +8,8 @@ Phys. 188, 2003). Measured steps and memory: docs/decisions.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from math import inf
 
 import numpy as np
@@ -17,7 +18,7 @@ from scipy.sparse import bsr_matrix, csr_matrix, diags
 from flexspline.fea.errors import IterationError
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.block_product import BlockProduct
-from flexspline.fea.solid.direct import factorised
+from flexspline.fea.solid.direct import Back, factorised
 from flexspline.fea.solid.iteration import conjugate_gradients, dot
 from flexspline.fea.types import TetMesh
 
@@ -47,63 +48,82 @@ def corner_interpolation(mesh: TetMesh, frames: NodeFrames) -> csr_matrix:
     return bsr_matrix((blocks, columns[order], indptr), shape=(3 * n, 3 * corners)).tocsr()
 
 
-def iterate(
-    matrix: csr_matrix,
-    right: np.ndarray,
-    free: np.ndarray,
-    corners: csr_matrix,
-    allowed: Callable[[np.ndarray], float],
-    worth: float = inf,
-) -> tuple[np.ndarray, float]:
-    """Solve K u = f for the free unknowns; the others are 0.
+class TwoLevel:
+    """K of the free unknowns, prepared once for all right-hand sides; the others are 0.
 
     Parameters
     ----------
-    matrix, right : K (N, N) and f (N,) of all unknowns, 3·node + component.
-    free : (N,) which unknowns are; f is 0 at the others.
-    corners : `corner_interpolation` of the mesh.
-    allowed : of u (N,), what (u − u*)·K(u − u*) may be [N·mm].
-    worth : further steps that are worth while; where its rate tells of more, the iteration ends.
-
-    Returns
-    -------
-    u (N,), and a bound of (u − u*)·K(u − u*), u* exact, by the spectrum seen [N·mm].
-
-    Raises
-    ------
-    IterationError : it is more than `allowed` after MOST_STEPS, or where it ended early.
-    SolveError : K is not positive definite, or there is no memory for the corners' factors.
+    matrix : K (N, N) of all unknowns, 3·node + component; 1 on the diagonal of what is not free, 0 beside it.
+    free : (N,) which unknowns are.
+    interpolation : (N, c) free unknowns from the corners' free ones, as `corner_interpolation`.
+    exact : solves K of these.
     """
-    if not right.any():
-        return np.zeros_like(right), 0.0
-    of_free = diags(free.astype(float))
-    p = (of_free @ corners)[:, np.flatnonzero(free[: corners.shape[1]])].tocsr()  # these come first
-    up = p.T.tocsr()
-    coarse = (up @ (matrix @ p)).tocsr()
-    blocks = _uncoupled(matrix, free)
-    double = BlockProduct(blocks)
-    # conjugate gradients bear a preconditioner's rounding, and its products with K are most of the time
-    blocks = blocks.astype(np.float32)
-    single = BlockProduct(blocks)
-    p, up = p.astype(np.float32), up.astype(np.float32)
-    smooth = _Smoother(single, _inverse_of_nodes(blocks), free)
-    with factorised(coarse, single=True) as exact:
 
-        def precondition(residual: np.ndarray) -> np.ndarray:
-            r = residual.astype(np.float32)
-            x = smooth(r)
-            x += p @ exact(up @ (r - single @ x)).astype(np.float32)
-            return (x + smooth(r - single @ x)).astype(np.float64)
+    def __init__(
+        self, matrix: bsr_matrix, free: np.ndarray, interpolation: csr_matrix, exact: Back
+    ) -> None:
+        self._double = BlockProduct(matrix)
+        # conjugate gradients bear a preconditioner's rounding, and its products with K are most of the time
+        blocks = matrix.astype(np.float32)
+        self._single = BlockProduct(blocks)
+        self._down = interpolation.astype(np.float32)
+        self._up = self._down.T.tocsr()
+        self._smooth = _Smoother(self._single, _inverse_of_nodes(blocks), free)
+        self._exact = exact
 
+    def solve(
+        self, right: np.ndarray, allowed: Callable[[np.ndarray], float], worth: float = inf
+    ) -> tuple[np.ndarray, float]:
+        """Solve K u = f.
+
+        Parameters
+        ----------
+        right : f (N,), 0 where unknowns are not free.
+        allowed : of u (N,), what (u − u*)·K(u − u*) may be [N·mm].
+        worth : further steps that are worth while; where its rate tells of more, the iteration ends.
+
+        Returns
+        -------
+        u (N,), and a bound of (u − u*)·K(u − u*), u* exact, by the spectrum seen [N·mm].
+
+        Raises
+        ------
+        IterationError : it is more than `allowed` after MOST_STEPS, or where it ended early.
+        SolveError : K is not positive definite.
+        """
+        if not right.any():
+            return np.zeros_like(right), 0.0
         found = conjugate_gradients(
-            double.__matmul__, precondition, right, MOST_STEPS, allowed, worth
+            self._double.__matmul__, self._precondition, right, MOST_STEPS, allowed, worth
         )
         # the recurrence drifts from the true residual by rounding: the energy is of the true one
-        r = right - double @ found.x
-        left, most = dot(r, precondition(r)) / found.spectrum[0], allowed(found.x)
+        r = right - self._double @ found.x
+        left, most = dot(r, self._precondition(r)) / found.spectrum[0], allowed(found.x)
         if found.early and left > most:
             raise IterationError(found.steps, left, most)
         return found.x, left
+
+    def _precondition(self, residual: np.ndarray) -> np.ndarray:
+        r = residual.astype(np.float32)
+        x = self._smooth(r)
+        x += self._down @ self._exact(self._up @ (r - self._single @ x)).astype(np.float32)
+        return (x + self._smooth(r - self._single @ x)).astype(np.float64)
+
+
+@contextmanager
+def two_level(matrix: csr_matrix, free: np.ndarray, corners: csr_matrix) -> Iterator[TwoLevel]:
+    """As `TwoLevel`, with the corners' factors, for as long as the context lasts.
+
+    Raises
+    ------
+    SolveError : there is no memory for these factors.
+    """
+    of_free = diags(free.astype(float))
+    p = (of_free @ corners)[:, np.flatnonzero(free[: corners.shape[1]])].tocsr()  # these come first
+    coarse = (p.T.tocsr() @ (matrix @ p)).tocsr()
+    blocks = _uncoupled(matrix, free)
+    with factorised(coarse, single=True) as exact:
+        yield TwoLevel(blocks, free, p, exact)
 
 
 class _Smoother:
