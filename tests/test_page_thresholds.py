@@ -61,6 +61,7 @@ from flexspline.pipeline.diagnosis.sweep.residual import lack_of_fit, stick_slip
 from flexspline.pipeline.diagnosis.sweep.rig_faults import (
     angle_jumps,
     backward_loops,
+    dragged_crossing,
     torque_delay,
     torque_zero_drift,
 )
@@ -161,6 +162,8 @@ STATED = [
     diagnosis("backwards on both sides of the gap by {} deviations", backward_loops.BACKWARD_DEVIATIONS),
     diagnosis("makes the loops equal, and {} of it as its uncertainty", torque_delay.FILTER_MISS),
     diagnosis("if a late form is {} nats better", torque_offset_guess.FIRST_NATS),
+    diagnosis("if drag is {} nats better", torque_offset_guess.FIRST_NATS),
+    diagnosis("the friction found differs by {} deviations", dragged_crossing.SAME_DEVIATIONS),
     diagnosis("is {} nats better than the other forms without them, and at most {} nats worse",
               torque_offset_guess.FIRST_NATS, decision.RIVAL_EVIDENCE),
     diagnosis("moves between the first and the last {} of a record", 1 / torque_zero_drift.PARTS),

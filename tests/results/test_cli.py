@@ -252,6 +252,6 @@ def test_a_stress_above_the_stated_limit_is_said(
     assert result["wave_generator_peak_at_excluded_border"] is True
     assert result["wave_generator_seat_width_mm"] == 8
     assert result["wave_generator_peak_half_seat_mises_MPa"] > 0
-    (line,) = [w for w in result["warnings"] if "mises" in w]
+    (line,) = [w for w in result["warnings"] if "Mises" in w]
     assert f"is above {LIMIT} = 400" in line
     assert f"warning: {line}" in done.stderr

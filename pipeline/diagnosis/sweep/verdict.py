@@ -140,7 +140,6 @@ def _misread(
         late = late_angle_of(prepared, explained)  # rig_faults/late_angle.py
         if late is not None:
             return late
-        return dragged_crossing_of(
-            prepared, explained, decision.causes
-        )  # rig_faults/dragged_crossing.py
+        causes = decision.causes
+        return dragged_crossing_of(prepared, explained, causes)  # rig_faults/dragged_crossing.py
     return found
