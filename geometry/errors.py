@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from unicodedata import category
 
 _UNREAD = re.compile("[\udc80-\udcff]+")
 MISSING = object()
@@ -139,5 +140,10 @@ def why_of(fault: OSError, where: str = "") -> str:
 def one_line(text: str, limit: int = 600) -> str:
     """Printable text on one line: control characters are written as escapes."""
     text = readable(text[: limit + 1])
-    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    text = "".join(c if _is_shown(c) else c.encode("unicode_escape").decode() for c in text)
     return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def _is_shown(letter: str) -> bool:
+    """Whether it needs no escape: Python counts no space but the plain one as printable."""
+    return letter.isprintable() or category(letter) == "Zs"
