@@ -12,7 +12,12 @@ import numpy as np
 import pytest
 from example_files import EXAMPLES
 
-from flexspline.fea.errors import MesherTimeError, SolidError, TooManyElementsError
+from flexspline.fea.errors import (
+    MesherTimeError,
+    MeshQualityError,
+    SolidError,
+    TooManyElementsError,
+)
 from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
@@ -295,6 +300,45 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     again = AnalysisContext(cup.context.design, Cache(tmp_path), Progress()).part("flexspline")
     part_stiffness.twisted_part(again)
     assert asked[2:] == [first]  # the mesh with longer edges is kept
+
+
+@pytest.mark.parametrize(
+    ("fault", "times"),
+    [
+        (None, []),
+        (MeshQualityError("a patch is described badly"), [1.0]),
+        (MesherTimeError("it is slow", "wait"), [solid_torsion.COARSER_FIRST**2]),
+    ],
+    ids=["none", "quality", "time"],
+)
+def test_fTetWild_begins_with_longer_edges_where_cuts_are_solved_alone(
+    fault: SolidError | None, times: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With shorter ones after a mesh that fails a check, with still longer ones after one that took long."""
+    context = AnalysisContext(
+        DESIGN.changed({"solver.mesher": "tetwild"}), Cache(tmp_path), Progress()
+    )
+    shaft = context.part("shaft")
+    swept = part_meshes.swept_mesh(shaft.part, shaft.sector.degrees, shaft.first_spec)
+    asked: list[MeshSpec] = []
+
+    def fails_once(surface: object, spec: MeshSpec) -> TetMesh:
+        asked.append(spec)
+        if fault is not None and len(asked) == 1:
+            raise fault
+        assert swept is not None
+        return swept
+
+    monkeypatch.setattr(part_meshes, "mesh_surface", fails_once)
+    monkeypatch.setattr(
+        part_meshes, "surface_to_mesh", lambda *_: SimpleNamespace(sharp_edges=np.empty((0, 3)))
+    )
+    found = solid_torsion.twisted(shaft, shaft.tolerance).stiffness
+    assert found.half_width < shaft.tolerance
+    usual = shaft.first_spec.grading
+    each = [solid_torsion.COARSER_FIRST, *times]
+    assert [spec.grading for spec in asked] == [usual.scaled(by) for by in each]
+    assert found.shortfall.of_the_machine == isinstance(fault, MesherTimeError)
 
 
 def test_nobody_waits_for_fTetWild_where_an_enclosure_answers(
