@@ -13,12 +13,19 @@ import numpy as np
 
 from flexspline.fea.address_space import LIBRARIES_BYTES, free_address_space_bytes
 
+SETTINGS = {"MKL_DISABLE_FAST_MM": "1"}
+"""oneMKL keeps a list of memory by thread, and in a copy of the process (a fork) that list may have no end: a
+copy made after other threads had used oneMKL turned in `mkl_serv_malloc` for minutes. Without the list a
+command takes 1 % more of the processor."""
+
 
 @cache
 def mkl() -> Any:
     """The library, or None where MKL does not exist or cannot be loaded."""
     if free_address_space_bytes() < LIBRARIES_BYTES:
         return None
+    for name, value in SETTINGS.items():  # which it reads once
+        os.environ.setdefault(name, value)
     # pypardiso would search the whole environment for MKL, twice, 0.3 s, and not the one that a virtual
     # environment may share packages with: it lies where wheels put it
     for prefix in (sys.prefix, sys.base_prefix):
