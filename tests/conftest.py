@@ -59,9 +59,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
-    """Where pytest-xdist is there, the whole suite runs four files at a time unless `-n` says otherwise.
+    """Where pytest-xdist is there, the whole suite runs three files at a time unless `-n` says otherwise.
 
-    A page is written by the process that ran the tests: one, whatever `-n` says. Four workers keep two
+    A page is written by the process that ran the tests: one, whatever `-n` says. Three workers keep two
     cores busy, as tests of a server or a page wait for it. They take a thread each: those of the linear
     algebra libraries would wait for each other in a loop that keeps a core busy. A run of the example cup on
     a loaded machine, processor time: 52 s with two, 43 s with one. And they keep compiled modules, whatever
@@ -73,7 +73,7 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if any(config.getoption(name, default=False) for name in WRITERS):
         option.numprocesses = 0
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
-        option.numprocesses, option.dist = 4, "loadfile"
+        option.numprocesses, option.dist = 3, "loadfile"
         option.loadscopereorder = False  # `SLOWEST` says the order
         for name, value in (ONE_THREAD | FEW_PAGE_FAULTS).items():  # which the workers inherit
             os.environ.setdefault(name, value)
