@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 from weakref import finalize
@@ -12,6 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
+from flexspline.fea.kept_entries import KeptEntries, starts_of
 from flexspline.fea.mkl import address, mkl
 
 PARDISO_OUT_OF_MEMORY = -2
@@ -44,8 +44,10 @@ class PardisoFactors:
         self._iparm[IN_SINGLE] = single
         self._type = np.float32 if single else np.float64
         matrix = _rising(matrix)
-        self._upper = _UpperTriangle.of(matrix)
-        self._data = self._upper.entries(matrix, self._type)
+        self._upper = KeptEntries.of(matrix, _upper)
+        self._starts = starts_of(self._upper.counts)
+        self._columns = self._upper.columns.astype(np.int32)
+        self._data = self._entries(matrix)
         self.release = finalize(
             self, _call, self._pt, self._iparm, self._threads, RELEASE, matrix.shape[0]
         )
@@ -65,9 +67,9 @@ class PardisoFactors:
         SolveError : as when made; nothing can be solved any more.
         """
         matrix = _rising(matrix)
-        if not self._upper.is_of(matrix):
+        if not self._upper.are_of(matrix):
             return False
-        self._data = self._upper.entries(matrix, self._type)
+        self._data = self._entries(matrix)
         self._do(FACTORISE)
         return True
 
@@ -79,10 +81,11 @@ class PardisoFactors:
         return x.astype(np.float64)
 
     def _do(self, phase: int, b: np.ndarray | None = None, x: np.ndarray | None = None) -> None:
-        matrix = (self._data, self._upper.starts, self._upper.columns)
-        _call(
-            self._pt, self._iparm, self._threads, phase, len(self._upper.starts) - 1, matrix, b, x
-        )
+        matrix = (self._data, self._starts, self._columns)
+        _call(self._pt, self._iparm, self._threads, phase, len(self._starts) - 1, matrix, b, x)
+
+    def _entries(self, matrix: csr_matrix) -> np.ndarray:
+        return matrix.data[self._upper.kept].astype(self._type)
 
 
 def _call(
@@ -129,40 +132,9 @@ def _rising(matrix: csr_matrix) -> csr_matrix:
     return matrix if matrix.has_sorted_indices else matrix.sorted_indices()
 
 
-@dataclass(frozen=True)
-class _UpperTriangle:
-    """Where a CSR matrix has its entries, and which of them oneMKL takes: those of the upper triangle.
-
-    Attributes
-    ----------
-    all_starts, all_columns : the matrix's. kept : which entries, a mask. columns, starts : of these.
-    """
-
-    all_starts: np.ndarray
-    all_columns: np.ndarray
-    kept: np.ndarray
-    columns: np.ndarray
-    starts: np.ndarray
-
-    @classmethod
-    def of(cls, matrix: csr_matrix) -> _UpperTriangle:
-        """Of a matrix as of `_rising`."""
-        n = matrix.shape[0]
-        rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
-        kept = matrix.indices >= rows
-        starts = np.concatenate([[0], np.cumsum(np.bincount(rows[kept], minlength=n))])
-        columns = matrix.indices[kept].astype(np.int32)
-        return cls(matrix.indptr, matrix.indices, kept, columns, starts.astype(np.int32))
-
-    def is_of(self, matrix: csr_matrix) -> bool:
-        """Whether another matrix has its entries at the same places."""
-        return np.array_equal(matrix.indptr, self.all_starts) and np.array_equal(
-            matrix.indices, self.all_columns
-        )
-
-    def entries(self, matrix: csr_matrix, to: type) -> np.ndarray:
-        """Those of the upper triangle."""
-        return matrix.data[self.kept].astype(to)
+def _upper(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """A mask of the entries that oneMKL takes: those of the upper triangle."""
+    return columns >= rows
 
 
 def _said(error: int, unknowns: int) -> SolveError:

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
+from flexspline.fea.kept_entries import KeptEntries, starts_of
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -26,45 +27,34 @@ condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.01
 
 @dataclass(frozen=True)
 class _FreeEntries:
-    """Which entries of a CSR matrix stand between free unknowns, and where they stand there.
+    """The entries of a CSR matrix between its free unknowns, and where they stand there.
 
     scikit-fem's `condense` finds that for each matrix: 4.7 of a harmonic's 25 ms (12 000 unknowns), 0.7 here.
 
     Attributes
     ----------
-    starts, columns : of the whole matrix. free : (N,) mask.
-    kept : numbers of the entries. free_starts, free_columns : of the matrix of the free unknowns.
+    free : (N,) mask. starts, columns : of the matrix of the free unknowns.
     """
 
+    free: np.ndarray
+    entries: KeptEntries
     starts: np.ndarray
     columns: np.ndarray
-    free: np.ndarray
-    kept: np.ndarray
-    free_starts: np.ndarray
-    free_columns: np.ndarray
 
     @classmethod
     def of(cls, matrix: csr_matrix, free: np.ndarray) -> _FreeEntries:
-        rows = np.repeat(np.arange(len(free)), np.diff(matrix.indptr))
-        kept = np.flatnonzero(free[rows] & free[matrix.indices])
-        number = np.cumsum(free) - 1
-        counts = np.bincount(number[rows[kept]], minlength=int(free.sum()))
-        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-        columns = number[matrix.indices[kept]].astype(np.int32)
-        return cls(matrix.indptr, matrix.indices, free, kept, starts, columns)
+        entries = KeptEntries.of(matrix, lambda rows, columns: free[rows] & free[columns])
+        number = np.cumsum(free, dtype=np.int32) - 1
+        return cls(free, entries, starts_of(entries.counts[free]), number[entries.columns])
 
-    def fit(self, matrix: csr_matrix, free: np.ndarray) -> bool:
-        """Whether they are this matrix's."""
-        return (
-            np.array_equal(free, self.free)
-            and np.array_equal(matrix.indptr, self.starts)
-            and np.array_equal(matrix.indices, self.columns)
-        )
+    def are_of(self, matrix: csr_matrix, free: np.ndarray) -> bool:
+        """Whether a matrix with these free unknowns has them at the same places."""
+        return np.array_equal(free, self.free) and self.entries.are_of(matrix)
 
     def between(self, matrix: csr_matrix) -> csr_matrix:
         """The matrix of the free unknowns."""
-        size = len(self.free_starts) - 1
-        entries = (matrix.data[self.kept], self.free_columns, self.free_starts)
+        size = len(self.starts) - 1
+        entries = (matrix.data[self.entries.kept], self.columns, self.starts)
         return csr_matrix(entries, shape=(size, size))
 
 
@@ -80,7 +70,7 @@ class PatternSolver:
     def free_part(self, matrix: csr_matrix, free: np.ndarray) -> csr_matrix:
         """K between the free unknowns, a mask (N,) of those of `matrix`."""
         entries = self._entries
-        if entries is None or not entries.fit(matrix, free):
+        if entries is None or not entries.are_of(matrix, free):
             entries = self._entries = _FreeEntries.of(matrix, free)
         return entries.between(matrix)
 

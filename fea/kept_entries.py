@@ -1,0 +1,48 @@
+"""Some entries of sparse matrices that have their entries at the same places: those places are found once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+
+@dataclass(frozen=True)
+class KeptEntries:
+    """Which entries of a CSR matrix are kept, and where its entries stand.
+
+    Attributes
+    ----------
+    all_starts, all_columns : of the matrix. kept : a mask of its entries.
+    counts : (N,) of kept entries by row. columns : of these entries.
+    """
+
+    all_starts: np.ndarray
+    all_columns: np.ndarray
+    kept: np.ndarray
+    counts: np.ndarray
+    columns: np.ndarray
+
+    @classmethod
+    def of(
+        cls, matrix: csr_matrix, keep: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    ) -> KeptEntries:
+        """`keep` gives the mask, of the entries' rows and columns."""
+        n = matrix.shape[0]
+        rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
+        kept = keep(rows, matrix.indices)
+        counts = np.bincount(rows[kept], minlength=n)
+        return cls(matrix.indptr, matrix.indices, kept, counts, matrix.indices[kept])
+
+    def are_of(self, matrix: csr_matrix) -> bool:
+        """Whether a matrix has its entries at the same places."""
+        return np.array_equal(matrix.indptr, self.all_starts) and np.array_equal(
+            matrix.indices, self.all_columns
+        )
+
+
+def starts_of(counts: np.ndarray) -> np.ndarray:
+    """(n + 1,) where each row starts, by the entries of each (n,)."""
+    return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
