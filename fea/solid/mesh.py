@@ -12,7 +12,12 @@ from flexspline.fea.solid.imprint import MesherMesh, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading, graded_background
-from flexspline.fea.solid.snap import into_sector_planes, snap_middles, snap_to_surfaces, undo_inverted
+from flexspline.fea.solid.snap import (
+    into_sector_planes,
+    snap_middles,
+    snap_to_surfaces,
+    undo_inverted,
+)
 from flexspline.fea.solid.tetwild import MESHER_SECONDS, TetwildSettings, tetrahedralize
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
@@ -148,7 +153,12 @@ def _quadratic(
     # a middle follows its corners in meshing space, then goes onto the surface itself
     middles = space.back(space.to(corners)[edges].mean(axis=1))
     nodes = snap_middles(
-        np.vstack([corners, middles]), edges, facets, facet_surface, surface.surfaces, spec.snap_limit
+        np.vstack([corners, middles]),
+        edges,
+        facets,
+        facet_surface,
+        surface.surfaces,
+        spec.snap_limit,
     )
     nodes = straightened(nodes, cells, edges, facets)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))

@@ -54,8 +54,8 @@ def snap_middles(
     """The middle nodes, the last of `nodes` (n, 3) mm, as `snap_to_surfaces`; a copy.
 
     Where several surfaces meet, a middle goes to their common point only if both ends of its edge (e, 2) lie
-    on all of them. An edge that crosses a smooth joint has an end beside it; its middle, drawn to the joint by
-    0.1 mm, bent the elements so far that they were made straight, and K came out 0.04 % too low.
+    on all of them. An edge that crosses a smooth joint has an end beside it. Its middle, moved to the joint
+    by 0.1 mm, bent the elements so far that they were made straight, and K came out 0.04 % too low.
     """
     corners = len(nodes) - len(edges)
     out = nodes.copy()

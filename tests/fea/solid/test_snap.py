@@ -13,7 +13,9 @@ from flexspline.geometry.surfaces import Swept
 
 R_mm, JOINT_mm = 10.0, 3.0
 TUBE = Swept(Segment((R_mm, JOINT_mm), (R_mm, 10.0)))
-FILLET = Swept(Segment((R_mm + 1.5, JOINT_mm - 1.5), (R_mm, JOINT_mm), centre=(R_mm + 1.5, JOINT_mm)))
+FILLET = Swept(
+    Segment((R_mm + 1.5, JOINT_mm - 1.5), (R_mm, JOINT_mm), centre=(R_mm + 1.5, JOINT_mm))
+)
 """They meet at z = 3 mm without an edge."""
 OPENING = 0.2
 """[rad] Of the edge that both facets share."""
