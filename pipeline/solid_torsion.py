@@ -72,9 +72,9 @@ Eighteen random shafts, 0.5 to 5 % asked: 39.5 s of the processor for 43.0; two 
 and the peak stress of `keyed-shaft`: 1.3 s for 2.3, ± 0.029 % for 0.024, 2.239 MPa for 2.234. At 0.1 % a mesh
 more is usual."""
 FLEXSPLINE_FIRST_ELEMENTS = 5_000
-"""Of a flexspline's first mesh, swept, where its holes are solved alone; its lobes are solved on it too. Ten of
-twelve random flexsplines had fewer elements than with FIRST_ELEMENTS, K as well within its tolerance; one of
-0.1 % took a second mesh."""
+"""Of a flexspline's first mesh, swept, where its holes are solved alone; its lobes are solved on it too. Ten
+of twelve random flexsplines had fewer elements than with FIRST_ELEMENTS, K as well within its tolerance; one
+of 0.1 % took a second mesh."""
 LEAST_COARSE_ELEMENTS = 4_000
 """Of such a mesh: fewer leave too little for the meshes after it, each of twice as many at most. A shaft with
 two holes was known to ± 0.98 % by 2 742, 5 646 and 11 341 elements, to ± 0.21 % by 10 863 and 21 799."""
