@@ -18,11 +18,11 @@ from flexspline.pipeline.enclosure import answered_within, check_against, overla
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_torsion import (
-    RIM_ELEMENTS,
     SECOND_SECONDS,
     TurnedField,
     TwistedPart,
     copies_in_rim,
+    most_for_lobes,
     slow_to_confirm,
     twisted,
 )
@@ -129,13 +129,13 @@ def turned_field(model: PartModel, twisted: TwistedPart) -> TurnedField:
 
 
 def rim_mesh(model: PartModel) -> MeshedPart:
-    """A flexspline's sector for the lobes and the ellipse: the torsion's, or a coarser one by RIM_ELEMENTS.
+    """A flexspline's sector for lobes and ellipse: the torsion's, or a coarser one (`most_for_lobes`).
 
     Raises
     ------
     ComputationError, MemoryError : as `twisted_part`.
     """
-    meshed, most = twisted_part(model).rim, RIM_ELEMENTS / copies_in_rim(model)
+    meshed, most = twisted_part(model).rim, most_for_lobes(model) / copies_in_rim(model)
     if meshed.mesh.elements <= most or not model.is_swept:
         return meshed
     meshes = PartMeshes(model)

@@ -16,7 +16,7 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
-from flexspline.pipeline.solid_torsion import RIM_ELEMENTS, SOLID_SECONDS, copies_in_rim
+from flexspline.pipeline.solid_torsion import SOLID_SECONDS, copies_in_rim, most_for_lobes
 
 MOST_LOBE_ELEMENTS = 100_000
 """Of the quarter or half: 450 000 unknowns. On a thick hat 89 928 took 18 s of the processor for each of the
@@ -118,8 +118,8 @@ def _numbered_mesh(flexspline: PartModel, number: int) -> TetMesh:
 
 
 def first_rim_spec(flexspline: PartModel) -> MeshSpec:
-    """Of a first mesh for the rim, of RIM_ELEMENTS at most where it may be coarser."""
-    return PartMeshes(flexspline).coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+    """Of a first mesh for the rim, of `most_for_lobes` where it may be coarser."""
+    return PartMeshes(flexspline).coarsened(most_for_lobes(flexspline) / copies_in_rim(flexspline))
 
 
 def swept_rim(flexspline: PartModel, spec: MeshSpec, finer: Finer | None = None) -> TetMesh:

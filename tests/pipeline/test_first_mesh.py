@@ -194,7 +194,7 @@ def test_the_rims_mesh_keeps_within_its_elements(
     usual = part_stiffness.rim_mesh(cup).mesh.elements
     copies = 3  # wedges of 30° in the ellipse's quarter
     assert solid_torsion.copies_in_rim(cup) == copies
-    monkeypatch.setattr(part_stiffness, "RIM_ELEMENTS", copies * usual - 1)
+    monkeypatch.setattr(solid_torsion, "HOLES_ALONE_ELEMENTS", copies * usual - 1)
     assert part_stiffness.rim_mesh(cup).mesh.elements < usual
 
 
