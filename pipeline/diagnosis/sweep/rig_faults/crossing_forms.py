@@ -93,19 +93,18 @@ def of_time(history: History, kind: str) -> Iterator[Tried]:
 def late(history: History, kind: str, time_s: float) -> Tried:
     """The form of one kind and time."""
     torque = history.torque_Nm
-    lagging = lags(torque, history, np.array([time_s]))[:, 0]
     if kind in (DELAY, "delayed twist"):
         delayed = torque_read_at(history, -time_s)
         return Tried(kind, time_s, _sharp(delayed if kind == DELAY else torque), delayed)
-    if kind == FILTER:
-        return Tried(kind, time_s, _spread(history, torque, time_s), lagging)
     if kind == BOTH:  # what a filter made of a ramp is the ramp, later by its time
         true = torque_read_at(history, time_s)
         return Tried(kind, time_s, _spread(history, true, time_s))
     if kind == "torque":
         true = torque_read_at(history, time_s)
         return Tried(kind, time_s, _sharp(true), true)
-    return Tried(kind, time_s, _sharp(torque), lagging)
+    lagging = lags(torque, history, np.array([time_s]))[:, 0]
+    form = _spread(history, torque, time_s) if kind == FILTER else _sharp(torque)
+    return Tried(kind, time_s, form, lagging)
 
 
 def _sharp(torque_Nm: np.ndarray) -> Form:
