@@ -134,6 +134,8 @@ def filtered_side(history: History, torque_Nm: np.ndarray, filter_s: float) -> n
             crossed, torque[:-1] / moved, 1.0
         )  # share of the step beyond the crossing
         keep, kept_after = np.exp(-step), np.exp(-after * step)
-        drive = side[:-1] * (kept_after - keep) + side[1:] * (1 - kept_after)
-        out[rows] = first_order(keep, np.r_[side[0], drive])
+        drive = np.empty(len(rows))
+        drive[0] = side[0]
+        drive[1:] = side[:-1] * (kept_after - keep) + side[1:] * (1 - kept_after)
+        out[rows] = first_order(keep, drive)
     return out
