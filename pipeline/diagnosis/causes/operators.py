@@ -208,7 +208,9 @@ def lags(values: np.ndarray, history: History, constants_s: np.ndarray) -> np.nd
         keep = np.exp(-step)
         # v linear over the step: x₁ = x₀k + v₀(g − k) + v₁(1 − g), g = (1 − k)/step
         share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, ABOVE_ZERO), 1 - step / 2)
-        drive = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
+        drive = np.empty((len(v), len(constants_s)))
+        drive[0] = v[0]
+        drive[1:] = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
         for m in range(len(constants_s)):
-            out[rows, m] = first_order(keep[:, m], np.r_[v[0], drive[:, m]])
+            out[rows, m] = first_order(keep[:, m], drive[:, m])
     return out

@@ -26,15 +26,19 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
         if b - a > LONGEST_OUTLIER:
             out[a:b] = False
     rows = np.flatnonzero(out)
-    rising = np.gradient(less_jitter(history).torque_Nm) > 0
     near = SAME_PLACE * history.largest_Nm
-    for i in rows:
+    others: dict[int, np.ndarray] = {}
+    for i in rows.tolist():
         same = (
             (np.abs(history.torque_Nm[rows] - history.torque_Nm[i]) < near)
-            & (rising[rows] == rising[i])
             & (history.cycle[rows] != history.cycle[i])
             & (np.sign(residual[rows]) == np.sign(residual[i]))
         )
         if same.sum() >= 2:
-            out[i] = False
+            others[i] = rows[same]
+    if others:
+        rising = np.gradient(less_jitter(history).torque_Nm) > 0
+        for i, found in others.items():
+            if (rising[found] == rising[i]).sum() >= 2:
+                out[i] = False
     return out

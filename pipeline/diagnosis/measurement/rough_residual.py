@@ -57,5 +57,7 @@ def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
         fitted = basis @ coefficients
         off = np.abs(y - fitted)
         scale = robust_std(off) + LEAST_ANGLE_ARCSEC
-        weight = 1 / np.maximum(1, off / (3 * scale))
+        before, weight = weight, 1 / np.maximum(1, off / (3 * scale))
+        if np.array_equal(weight, before):
+            break
     return fitted

@@ -8,6 +8,7 @@ probability, and not a mean of both.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtr
@@ -128,11 +129,8 @@ class CrossingRows:
 
     def _blurred(self, places_Nm: np.ndarray, blur: Blur) -> np.ndarray:
         """(p,) with one blur. Rows beyond its reach of every place are summed once, not place by place."""
-        left, gap, half = self.left_arcsec, self.gap_arcsec, self.gap_arcsec / 2
-        below, above = (
-            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * half, left), gap))])
-            for side in (-1, 1)
-        )
+        left, gap = self.left_arcsec, self.gap_arcsec
+        below, above = self._on_one_side
         reach = blur.reach * self.width_Nm
         first = np.searchsorted(self.torque_Nm, places_Nm - reach)
         last = np.searchsorted(self.torque_Nm, places_Nm + reach)
@@ -147,6 +145,16 @@ class CrossingRows:
             - above[last]
             + np.where(inside, self._log(own, gap[at]), 0.0).sum(axis=1)
         )
+
+    @cached_property
+    def _on_one_side(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n + 1,) sums over the rows before each, were all of them below the gap, and above it."""
+        half, left, gap = self.gap_arcsec / 2, self.left_arcsec, self.gap_arcsec
+        below, above = (
+            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * half, left), gap))])
+            for side in (-1, 1)
+        )
+        return below, above
 
     def _own(
         self, beyond_Nm: np.ndarray, left: np.ndarray, gap: np.ndarray, blur: Blur

@@ -145,16 +145,17 @@ class Search:
         found: list[Candidate] = []
         for c, (gain, score) in zip(beam, self._scored(beam), strict=True):
             most = 2 if c.terms else len(score)
-            for j in self._joining.best_of_owners(score, most).tolist():
-                term = int(self._joining.members[j])
-                if np.isfinite(score[j]) and term not in c.terms:
-                    key = frozenset((*c.terms, term))
-                    if key not in self._seen:
-                        self._seen.add(key)
-                        found.append(Candidate(
-                            (*c.terms, term), c.owners | {self._owner[term]},
-                            c.log_evidence + float(gain[j]), c.score + float(score[j]),
-                        ))  # fmt: skip
+            best = self._joining.best_of_owners(score, most)
+            best = best[np.isfinite(score[best])]
+            joined = (self._joining.members[best], gain[best], score[best])
+            for term, nats, more in zip(*(each.tolist() for each in joined), strict=True):
+                key = frozenset((*c.terms, term))
+                if term not in c.terms and key not in self._seen:
+                    self._seen.add(key)
+                    found.append(Candidate(
+                        (*c.terms, term), c.owners | {self._owner[term]},
+                        c.log_evidence + nats, c.score + more,
+                    ))  # fmt: skip
         for f in found:
             self._remember(f)
         return found

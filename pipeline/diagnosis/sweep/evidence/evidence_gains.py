@@ -54,7 +54,7 @@ class RegressorGroup:
 
     @staticmethod
     def of(evidence: GaussianEvidence, members: Sequence[int]) -> RegressorGroup:
-        at = np.array([column_indices(evidence, (i,)) for i in members])
+        at = column_indices(evidence, members).reshape(len(members), -1)
         return RegressorGroup(at, with_prior(evidence, at))
 
     def gains(self, evidence: GaussianEvidence, sets: ColumnSets) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,11 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.sweep.evidence.regressors import DesignMatrix, Regressor
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import (
+    DesignMatrix,
+    Regressor,
+    shape_key,
+)
 from flexspline.pipeline.diagnosis.sweep.evidence.whitening import Whitening
 
 COLUMNS_AT_ONCE = 64
@@ -89,10 +93,10 @@ def gaussian_evidence(
     base = whitened(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
     wide = [
-        whitened(columns.all[:, i : i + COLUMNS_AT_ONCE])
+        whitened(columns.all[:, i : i + COLUMNS_AT_ONCE]) * prior[i : i + COLUMNS_AT_ONCE]
         for i in range(0, columns.all.shape[1], COLUMNS_AT_ONCE)
     ]
-    x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
+    x = np.hstack(wide) if wide else np.empty((len(y), 0))
     base_gram = base.T @ base + np.diag(columns.base_prior**-2)
     base_right = base.T @ y
     cross = base.T @ x
@@ -108,7 +112,7 @@ def with_shapes(
     old: GaussianEvidence, shapes: Sequence[tuple[Regressor, Shape]]
 ) -> GaussianEvidence:
     """The race with further shapes, each beside a term of the same cause; known ones are skipped."""
-    known = {shape_key(t.owner, t.shape) for t in old.terms}
+    known = {t.shape_key for t in old.terms}
     more, blocks = [], []
     for like, shape in shapes:
         key = shape_key(like.owner, shape)
@@ -152,11 +156,6 @@ def with_terms(
     )
 
 
-def shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
-    """By which two shapes are one, but for rounding."""
-    return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
-
-
 @dataclass(frozen=True)
 class Posterior:
     """Posterior of a set of terms: `amplitudes` of each term's columns, `covariance` over them and the base.
@@ -187,10 +186,8 @@ class Posterior:
 
 def column_indices(evidence: GaussianEvidence, chosen: Sequence[int]) -> np.ndarray:
     """Columns of several terms, in order."""
-    return np.concatenate(
-        [np.arange(evidence.terms[i].at.start, evidence.terms[i].at.stop) for i in chosen]
-        or [np.empty(0, int)]
-    ).astype(int)
+    places = (evidence.terms[i].at for i in chosen)
+    return np.array([j for at in places for j in range(at.start, at.stop)], int)
 
 
 def posterior_of(evidence: GaussianEvidence, chosen: Sequence[int]) -> Posterior:

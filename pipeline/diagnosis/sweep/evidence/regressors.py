@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from math import log
 
@@ -16,6 +18,14 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import Nuisance
 
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""
+
+
+ShapeKey = tuple[str, tuple[tuple[str, float], ...]]
+
+
+def shape_key(owner: str, shape: Shape) -> ShapeKey:
+    """By which two shapes are one, but for rounding."""
+    return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
 
 
 @dataclass(frozen=True)
@@ -36,10 +46,15 @@ class Regressor:
     against: frozenset[str] = frozenset()
     """Owners beside which it does not stand."""
 
-    @property
+    @cached_property
     def owner(self) -> str:
         """Cause id, or `?channel`."""
         return self.cause.id if self.cause else f"?{self.channel}"
+
+    @cached_property
+    def shape_key(self) -> ShapeKey:
+        """By which two shapes are one."""
+        return shape_key(self.owner, self.shape)
 
     @property
     def law(self) -> tuple[object, ...]:
@@ -147,17 +162,16 @@ def design_matrix(
             blocks.append(block.astype(np.float32))
             width += k
     rivals = nuisance_terms(rig, step)
+    alike = Counter(rival.channel for rival in rivals)
     for rival in rivals:
-        terms.append(_nuisance_regressor(rival, rivals, width, rig))
+        terms.append(_nuisance_regressor(rival, alike[rival.channel], width, rig))
         blocks.append(rival.columns.astype(np.float32))
         width += rival.columns.shape[1]
     return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms), ahead)
 
 
-def _nuisance_regressor(
-    rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: FitContext
-) -> Regressor:
-    alike = sum(r.channel == rival.channel for r in rivals)
+def _nuisance_regressor(rival: NuisanceTerm, alike: int, at: int, rig: FitContext) -> Regressor:
+    """One of `alike` terms of its channel."""
     k = rival.columns.shape[1]
     prior = np.full(k, rival.spread * rig.scale_arcsec)
     return Regressor(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, hstack
+from scipy.sparse import coo_array, csr_array
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
@@ -61,13 +61,17 @@ class Whitening:
             doubts[way.rows, : way.doubt_Nm.shape[1]] = way.doubt_Nm
         white = self._rows(self.rig.prediction.compliance * doubts[self.kept])
         place = np.cumsum(self.kept) - 1
-        blocks: list[coo_array] = []
-        sizes: list[np.ndarray] = []
+        count = 0
+        values, at, numbers, sizes = (list[np.ndarray]() for _ in range(4))
         for way in ways:
             rows = place[way.rows[self.kept[way.rows]]]
             own = white[rows, : way.doubt_Nm.shape[1]]
             directions, size, _ = np.linalg.svd(own, full_matrices=False)
-            at = np.repeat(rows, len(size)), np.tile(np.arange(len(size)), len(rows))
-            blocks.append(coo_array((directions.ravel(), at), shape=(len(white), len(size))))
+            values.append(directions.ravel())
+            at.append(np.repeat(rows, len(size)))
+            numbers.append(np.tile(count + np.arange(len(size)), len(rows)))
             sizes.append(size)
-        return csr_array(hstack(blocks)), 1 - 1 / np.hypot(1, np.concatenate(sizes))
+            count += len(size)
+        entries = np.concatenate(values), (np.concatenate(at), np.concatenate(numbers))
+        whole = coo_array(entries, shape=(len(white), count))
+        return csr_array(whole), 1 - 1 / np.hypot(1, np.concatenate(sizes))

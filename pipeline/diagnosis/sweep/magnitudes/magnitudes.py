@@ -15,10 +15,8 @@ from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.decision import weights
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
-    GaussianEvidence,
-    shape_key,
-)
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import shape_key
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
@@ -100,7 +98,7 @@ def _spring_std(identified: Identification, magnitude: float) -> float:
 
 def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
     """Sets with a term's shape replaced by one that leaves the spring another size."""
-    at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
+    at = {t.shape_key: i for i, t in enumerate(evidence.terms)}
     for place, i in enumerate(best.terms):
         term = evidence.terms[i]
         rig = evidence.columns.rig

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -147,10 +148,11 @@ def _rung(history: History, corners: Sequence[TorqueCorner], pole: np.ndarray) -
     for unit, rows in enumerate(history.unit_slices):
         own = [c for c in corners if c.unit == unit]
         time = history.time_s[rows]
-        state, at, k = np.zeros(len(pole), complex), time[0], 0
-        for i, t in enumerate(time):
-            while k < len(own) and own[k].time_s <= t:
-                state = state * np.exp(pole * (own[k].time_s - at)) + own[k].change
-                at, k = own[k].time_s, k + 1
-            out[rows[i]] = state * np.exp(pole * (t - at))
+        state, at = np.zeros(len(pole), complex), time[0]
+        met = np.maximum.accumulate([c.time_s for c in own])  # one after the other
+        edges = [*np.searchsorted(time, met).tolist(), len(time)]
+        for corner, (first, last) in zip(own, pairwise(edges), strict=True):
+            state = state * np.exp(pole * (corner.time_s - at)) + corner.change
+            at = corner.time_s
+            out[rows[first:last]] = state * np.exp(pole * (time[first:last, None] - at))
     return out

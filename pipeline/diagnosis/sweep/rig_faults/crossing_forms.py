@@ -93,19 +93,18 @@ def of_time(history: History, kind: str) -> Iterator[Tried]:
 def late(history: History, kind: str, time_s: float) -> Tried:
     """The form of one kind and time."""
     torque = history.torque_Nm
-    lagging = lags(torque, history, np.array([time_s]))[:, 0]
     if kind in (DELAY, "delayed twist"):
         delayed = torque_read_at(history, -time_s)
         return Tried(kind, time_s, _sharp(delayed if kind == DELAY else torque), delayed)
-    if kind == FILTER:
-        return Tried(kind, time_s, _spread(history, torque, time_s), lagging)
     if kind == BOTH:  # what a filter made of a ramp is the ramp, later by its time
         true = torque_read_at(history, time_s)
         return Tried(kind, time_s, _spread(history, true, time_s))
     if kind == "torque":
         true = torque_read_at(history, time_s)
         return Tried(kind, time_s, _sharp(true), true)
-    return Tried(kind, time_s, _sharp(torque), lagging)
+    lagging = lags(torque, history, np.array([time_s]))[:, 0]
+    form = _spread(history, torque, time_s) if kind == FILTER else _sharp(torque)
+    return Tried(kind, time_s, form, lagging)
 
 
 def _sharp(torque_Nm: np.ndarray) -> Form:
@@ -135,6 +134,8 @@ def filtered_side(history: History, torque_Nm: np.ndarray, filter_s: float) -> n
             crossed, torque[:-1] / moved, 1.0
         )  # share of the step beyond the crossing
         keep, kept_after = np.exp(-step), np.exp(-after * step)
-        drive = side[:-1] * (kept_after - keep) + side[1:] * (1 - kept_after)
-        out[rows] = first_order(keep, np.r_[side[0], drive])
+        drive = np.empty(len(rows))
+        drive[0] = side[0]
+        drive[1:] = side[:-1] * (kept_after - keep) + side[1:] * (1 - kept_after)
+        out[rows] = first_order(keep, drive)
     return out

@@ -31,7 +31,11 @@ def chain() -> Chain:
     return chain_of(analysis_context(DESIGN))
 
 
-def twist_of(chain: Chain) -> Callable[[np.ndarray], np.ndarray]:
+Twist = Callable[[np.ndarray], np.ndarray]
+
+
+@pytest.fixture(scope="module")
+def gear_twist(chain: Chain) -> Twist:
     """The gear's angle beyond half its gap [arcsec], of a size of torque."""
     grid = LARGEST_Nm * np.concatenate(
         [[0.0], np.linspace(0.001, 0.2, 60), np.linspace(0.21, 1, 80)]
@@ -40,15 +44,7 @@ def twist_of(chain: Chain) -> Callable[[np.ndarray], np.ndarray]:
     return lambda torque: np.interp(torque, grid, np.concatenate([[0.0], curve]))
 
 
-def measured(chain: Chain, times: float, spring: float, folder: Path) -> Diagnosis:
-    """Four cycles of the gear's curve, its twist so many `times`, with a `spring` [arcsec per N·m] behind."""
-    twist = twist_of(chain)
-    return recorded(chain, lambda t: times * twist(t) + spring * t, folder)
-
-
-def recorded(
-    chain: Chain, twist: Callable[[np.ndarray], np.ndarray], folder: Path, friction_Nm: float = 0.0
-) -> Diagnosis:
+def recorded(chain: Chain, twist: Twist, folder: Path, friction_Nm: float = 0.0) -> Diagnosis:
     """Four cycles of a twist [arcsec] of the size of torque at the teeth, behind the gap and friction."""
     share = np.concatenate([np.linspace(0, 1, 60), np.linspace(1, -1, 120), np.linspace(-1, 0, 60)])
     torque = LARGEST_Nm * np.tile(share, 4)
@@ -68,9 +64,9 @@ def recorded(
 
 
 @pytest.fixture(scope="module")
-def soft(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
+def soft(chain: Chain, gear_twist: Twist, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     """Of a third of the twist."""
-    return measured(chain, 1 / 3, 0.0, tmp_path_factory.mktemp("soft"))
+    return recorded(chain, lambda t: gear_twist(t) / 3, tmp_path_factory.mktemp("soft"))
 
 
 @pytest.mark.parametrize(
@@ -84,9 +80,13 @@ def soft(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     ],
 )
 def test_a_gear_of_another_stiffness_is_that_and_nothing_else(
-    times: float, spring: float, chain: Chain, soft: Diagnosis, tmp_path: Path
+    times: float, spring: float, chain: Chain, gear_twist: Twist, soft: Diagnosis, tmp_path: Path
 ) -> None:
-    found = soft if (times, spring) == (1 / 3, 0.0) else measured(chain, times, spring, tmp_path)
+    """With a `spring` [arcsec per N·m] behind."""
+    if (times, spring) == (1 / 3, 0.0):
+        found = soft
+    else:
+        found = recorded(chain, lambda t: times * gear_twist(t) + spring * t, tmp_path)
     assert found.verdict == "named"
     assert [c.id for c in found.causes] == ["series_compliance"]
     expected = 100 * (times - 1 + spring / COMPLIANCE)
@@ -109,13 +109,13 @@ def test_the_error_before_is_that_of_the_simulation(chain: Chain, soft: Diagnosi
 
 
 def test_a_stiffer_gear_with_a_soft_wind_up_and_friction_is_all_three(
-    chain: Chain, tmp_path: Path
+    chain: Chain, gear_twist: Twist, tmp_path: Path
 ) -> None:
     """A wind-up of 14 arcsec each way, gone at a third of the torque, on a gear of 0.72 of the twist."""
-    own, friction = twist_of(chain), 0.25
+    friction = 0.25
 
     def twist(torque: np.ndarray) -> np.ndarray:
-        return 0.72 * own(torque) + 14 * np.tanh(torque / 1.2)
+        return 0.72 * gear_twist(torque) + 14 * np.tanh(torque / 1.2)
 
     found = recorded(chain, twist, tmp_path, friction)
     causes = {c.id: c for c in found.causes}
@@ -135,7 +135,7 @@ def test_a_stiffer_gear_with_a_soft_wind_up_and_friction_is_all_three(
 
 @pytest.mark.parametrize("slope", [0.7, pytest.param(1.3, marks=pytest.mark.long)])
 def test_a_straight_line_has_lost_the_bend_and_keeps_its_slope(
-    slope: float, chain: Chain, tmp_path: Path
+    slope: float, chain: Chain, gear_twist: Twist, tmp_path: Path
 ) -> None:
     """What no cause has a name for is said to be missing, and makes no cause of itself."""
     found = recorded(chain, lambda t: slope * COMPLIANCE * t, tmp_path)
@@ -147,7 +147,7 @@ def test_a_straight_line_has_lost_the_bend_and_keeps_its_slope(
     assert "the same factor as its slope" not in said
     # the simulated bend: what a straight line and a step at zero leave of the gear's curve
     grid = np.linspace(0.05, 1, 200) * LARGEST_Nm
-    curve = twist_of(chain)(grid)
+    curve = gear_twist(grid)
     off = curve - np.polyval(np.polyfit(grid, curve, 1), grid)
     assert lost.rms == pytest.approx(min(1.0, slope) * np.sqrt((off**2).mean()), rel=0.25)
 
