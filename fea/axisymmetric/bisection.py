@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,13 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
     New nodes of fillets are put on the exact arc.
     """
     return refined_with_parents(mesh, marked)[0]
+
+
+def refined_while(mesh: MeridianMesh, marked: Callable[[MeridianMesh], np.ndarray]) -> MeridianMesh:
+    """The mesh refined until `marked` gives no triangle of it any more (a mask (m,))."""
+    while (now := marked(mesh)).any():
+        mesh = refined(mesh, now)
+    return mesh
 
 
 @dataclass(frozen=True)
@@ -36,12 +43,14 @@ class Box:
 
 def refined_within(mesh: MeridianMesh, boxes: Sequence[Box], share: float = 1.0) -> MeridianMesh:
     """The mesh refined until no triangle that meets a box has an edge longer than `share` of its longest."""
-    while True:
-        length = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
-        long = [(length > share * box.longest_mm) & box.meets(mesh) for box in boxes]
-        if not (marked := np.logical_or.reduce(long)).any():
-            return mesh
-        mesh = refined(mesh, marked)
+
+    def too_long(mesh: MeridianMesh) -> np.ndarray:
+        longest = mesh.longest_edges()
+        return np.logical_or.reduce(
+            [(longest > share * box.longest_mm) & box.meets(mesh) for box in boxes]
+        )
+
+    return refined_while(mesh, too_long)
 
 
 def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import mises_parts
 from flexspline.fea.quadratic_triangle import lattice_values
 from flexspline.fea.stress_rule import Largest
@@ -126,7 +126,7 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     along; so those near by may be no larger than half of it.
     """
     corner = mesh.points[mesh.triangles]
-    longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+    longest = mesh.longest_edges()
     # nodes at the border average over triangles that begin up to half a distance beyond it
     coarse = longest > exclusion_mm / 2
     near = _distance(corner[coarse], mesh.outline).min(axis=1) < 1.5 * exclusion_mm

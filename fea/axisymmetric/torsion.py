@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice
+from flexspline.fea.axisymmetric.bisection import Box, refined_twice, refined_while
 from flexspline.fea.axisymmetric.finer_in_boxes import finer_in_boxes
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
@@ -89,10 +89,7 @@ def solved_torsions(
 
 
 def _first_mesh(outline: Meridian, boundary: Boundary) -> MeridianMesh:
-    mesh = triangulate(outline)
-    while (near := across_from_axis(mesh, boundary)).any():
-        mesh = refined(mesh, near)
-    return mesh
+    return refined_while(triangulate(outline), lambda mesh: across_from_axis(mesh, boundary))
 
 
 class _Bounds:

@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.bisection import refined, refined_while
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
@@ -120,8 +120,10 @@ def triangulated(outline: Meridian) -> MeridianMesh:
 
 def fine_enough(mesh: MeridianMesh, patch: str, places: int) -> MeridianMesh:
     """Refined along the patch until that has two edges for each place."""
-    while True:
+
+    def along(mesh: MeridianMesh) -> np.ndarray:
         ends = mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))]
-        if len(ends) >= 2 * places:
-            return mesh
-        mesh = refined(mesh, np.isin(mesh.triangles, ends).sum(axis=1) > 1)
+        touching = np.isin(mesh.triangles, ends).sum(axis=1) > 1
+        return np.asarray(touching & (len(ends) < 2 * places))
+
+    return refined_while(mesh, along)

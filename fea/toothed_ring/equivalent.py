@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
+from flexspline.fea.axisymmetric.bisection import refined_while
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.refinement import refine
 from flexspline.fea.toothed_ring import plain
@@ -121,10 +121,9 @@ def _thicknesses(model: CellModel, nu: float) -> tuple[float, float, float]:
 def _finer(mesh: MeridianMesh, cell: ToothCell, size: float, at_notch: float) -> MeridianMesh:
     """No edge longer than `size`, nor than `at_notch` on triangles that touch the root's notch."""
     notch = np.linalg.norm(mesh.points - np.array(cell.root_corner), axis=1).argmin()
-    while True:
-        longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+
+    def too_long(mesh: MeridianMesh) -> np.ndarray:
         touching = (mesh.triangles == notch).any(axis=1)
-        long = longest > np.where(touching, at_notch, size)
-        if not long.any():
-            return mesh
-        mesh = refined(mesh, long)
+        return np.asarray(mesh.longest_edges() > np.where(touching, at_notch, size))
+
+    return refined_while(mesh, too_long)
