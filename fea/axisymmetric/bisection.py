@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths, edge_middles
+from flexspline.fea.edges import SIDES, edge_numbers
 
 
 def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
@@ -62,9 +63,8 @@ def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> Me
 def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
     """As `refined`, and of which triangle of `mesh` each of its triangles is a piece."""
     tri = _longest_first(mesh.points, mesh.triangles)
-    pairs = np.sort(tri[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     n = len(mesh.points)
-    keys, of = np.unique(pairs[:, 0] * n + pairs[:, 1], return_inverse=True)
+    keys, of = np.unique(edge_numbers(tri[:, SIDES], n), return_inverse=True)
     of = of.reshape(-1, 3)
     cut = np.zeros(len(keys), bool)
     cut[of[marked]] = True
@@ -77,8 +77,7 @@ def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[Meridi
     new[cut] = n + np.arange(cut.sum())
     ends = np.column_stack([keys // n, keys % n])
     middle = mesh.points[ends].mean(axis=1)
-    low, high = np.sort(mesh.edges, axis=1).T
-    rim = np.searchsorted(keys, low * n + high)
+    rim = np.searchsorted(keys, edge_numbers(mesh.edges, n))
     middle[rim] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
     edges, segment = _halved(mesh, new[rim])
     children, parent = _children(tri, new[of])

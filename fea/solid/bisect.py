@@ -9,14 +9,14 @@ the boundary's facet, are cut alike.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.fea.edges import SIDES, distinct_edges, edge_numbers
+
 PAIRS = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 """Edges of a tetrahedron."""
-SIDES = np.array([[0, 1], [1, 2], [2, 0]])
-"""Edges of a triangle."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,7 @@ class Simplices:
 
     def edges(self) -> np.ndarray:
         """(e, 2), each once, the lesser node first."""
-        key = np.unique(_keys(self.tets[:, PAIRS].reshape(-1, 2), self.nodes))
-        return np.column_stack([key // self.nodes, key % self.nodes])
+        return distinct_edges(self.tets[:, PAIRS], self.nodes)
 
 
 def halved(
@@ -45,8 +44,10 @@ def halved(
 
     Also the edges (j, 2) that were: the nodes between are numbered from `mesh.nodes` on, in their order.
     """
+    if not np.any(asked):
+        return replace(mesh, parents=np.arange(len(mesh.tets))), edges[:0]
     n = mesh.nodes
-    key = _keys(edges, n)
+    key = edge_numbers(edges, n)
     rising = np.argsort(key)
     edges, lengths, key = edges[rising], lengths[rising], key[rising]
     halve = np.asarray(asked)[rising]
@@ -61,9 +62,9 @@ def halved(
         """Ranks of pairs of nodes, -1 where they are not to be halved, and the nodes between."""
         old = np.asarray((pairs < n).all(axis=-1))
         at = np.minimum(
-            np.searchsorted(key, _keys(np.where(old[..., None], pairs, 0), n)), len(key) - 1
+            np.searchsorted(key, edge_numbers(np.where(old[..., None], pairs, 0), n)), len(key) - 1
         )
-        there = old & (key[at] == _keys(pairs, n)) & halve[at]
+        there = old & (key[at] == edge_numbers(pairs, n)) & halve[at]
         return np.where(there, rank[at], -1), middle[at]
 
     tets, whose = _cut(mesh.tets, PAIRS, marked_rank)
@@ -94,8 +95,3 @@ def _cut(
         other[rows, pairs[best, 0]] = node
         simplices, own = np.vstack([one, other]), np.concatenate([own, own])
     return np.vstack(done), np.concatenate(owners)
-
-
-def _keys(pairs: np.ndarray, nodes: int) -> np.ndarray:
-    """One number for each pair (..., 2) of nodes."""
-    return pairs.min(axis=-1).astype(np.int64) * nodes + pairs.max(axis=-1)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.fea.edges import edge_numbers
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
 from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
 from flexspline.fea.solid.layer_grading import WHOLE_STEP, with_middles_of
@@ -90,10 +91,8 @@ def _lengths(
     About the axis they count for less with the distance from holes and keyway.
     """
     edges = mesh.edges()
-    n = len(points)
-    pairs = np.sort(mesh.tets[:, PAIRS], axis=2).astype(np.int64)
     of_element = np.searchsorted(
-        edges[:, 0].astype(np.int64) * n + edges[:, 1], pairs[..., 0] * n + pairs[..., 1]
+        edge_numbers(edges, len(points)), edge_numbers(mesh.tets[:, PAIRS], len(points))
     )
     ends = polar(points)[edges]
     dr, turn, dz = (ends[:, 1] - ends[:, 0]).T

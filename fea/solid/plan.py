@@ -24,8 +24,9 @@ from flexspline.fea.axisymmetric.ruppert import (
     is_flat,
     is_poor,
 )
+from flexspline.fea.edges import SIDES, edge_numbers
 from flexspline.fea.solid.plan_curves import Curve
-from flexspline.fea.solid.plan_edges import PlanEdges, keys
+from flexspline.fea.solid.plan_edges import PlanEdges
 
 SMALLEST_PLAN_ANGLE = np.radians(20)
 """Of large triangles: what Ruppert's proof covers."""
@@ -119,15 +120,15 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
     mine = triangles[signed_areas(straight, triangles) < FLATTENED_TRIANGLE * scale * area]
     longest = edge_lengths(own.points, mine).argmax(axis=1)
     rows = np.arange(len(mine))
-    flat = keys(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
-    lines = keys(own.ends, n)
-    pairs = triangles[:, [[0, 1], [1, 2], [2, 0]]]
+    flat = edge_numbers(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
+    lines = edge_numbers(own.ends, n)
+    pairs = triangles[:, SIDES]
     off = own.middles() - own.points[own.ends].mean(axis=1)
     order = np.argsort(lines)
-    at = order[np.minimum(np.searchsorted(lines[order], keys(pairs, n)), len(lines) - 1)]
+    at = order[np.minimum(np.searchsorted(lines[order], edge_numbers(pairs, n)), len(lines) - 1)]
     along = own.points[pairs[..., 1]] - own.points[pairs[..., 0]]
     inwards = along[..., 0] * off[at, 1] - along[..., 1] * off[at, 0]  # over the edge's length
-    near = (lines[at] == keys(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
+    near = (lines[at] == edge_numbers(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
     free = np.setdiff1d(flat, lines)
     added = (own.points[free // n] + own.points[free % n]) / 2
     return added, np.isin(lines, np.union1d(flat, lines[at[near]]))
@@ -136,8 +137,8 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
 def _checked(own: PlanEdges, triangles: np.ndarray) -> PlanMesh:
     """Refuse a plan that lacks an edge of a line, or does not fill its rectangle."""
     n = len(own.points)
-    sides = triangles[:, [[0, 1], [1, 2], [2, 0]]]
-    missing = ~np.isin(keys(own.ends, n), keys(sides, n))
+    sides = triangles[:, SIDES]
+    missing = ~np.isin(edge_numbers(own.ends, n), edge_numbers(sides, n))
     span = np.ptp(own.points, axis=0).prod()
     covered = signed_areas(own.points, triangles).sum()
     if missing.any() or not abs(covered / span - 1) < 1e-9:  # rounding of a few thousand areas

@@ -151,8 +151,3 @@ def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first = np.array([min(group) for group in near])
     kept, number = np.unique(first, return_inverse=True)
     return points[kept], number
-
-
-def keys(pairs: np.ndarray, n: int) -> np.ndarray:
-    """One number for each pair (..., 2) of `n` points."""
-    return np.asarray(pairs.min(axis=-1).astype(np.int64) * n + pairs.max(axis=-1))

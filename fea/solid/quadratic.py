@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.fea.edges import SIDES, edge_numbers
 from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.elements import jacobian_ratio, linear_mesh
 
@@ -31,10 +32,9 @@ def with_middles(
     edges = mesh.edges.T
     n = len(corners)
     cells = np.hstack([tets, mesh.t2e.T + n])
-    key = edges[:, 0].astype(np.int64) * n + edges[:, 1]
+    key = edge_numbers(edges, n)
     order = np.argsort(key)
-    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2).astype(np.int64)
-    found = order[np.searchsorted(key[order], sides[:, :, 0] * n + sides[:, :, 1])]
+    found = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
     return edges, cells, np.hstack([faces, found + n])
 
 
