@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
-from flexspline.fea.kept_entries import KeptEntries, starts_of
+from flexspline.fea.kept_entries import EntryPlaces, KeptEntries, starts_of
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -49,7 +49,7 @@ class _FreeEntries:
 
     def are_of(self, matrix: csr_matrix, free: np.ndarray) -> bool:
         """Whether a matrix with these free unknowns has them at the same places."""
-        return np.array_equal(free, self.free) and self.entries.are_of(matrix)
+        return np.array_equal(free, self.free) and self.entries.places.are_of(matrix)
 
     def between(self, matrix: csr_matrix) -> csr_matrix:
         """The matrix of the free unknowns."""
@@ -65,7 +65,7 @@ class PatternSolver:
         self._entries: _FreeEntries | None = None
         self._lock = Lock()  # factors serve one thread at a time
         self._factors: PardisoFactors | None = None
-        self._places: tuple[np.ndarray, np.ndarray] | None = None
+        self._places: EntryPlaces | None = None
 
     def free_part(self, matrix: csr_matrix, free: np.ndarray) -> csr_matrix:
         """K between the free unknowns, a mask (N,) of those of `matrix`."""
@@ -87,8 +87,8 @@ class PatternSolver:
         with self._lock:
             last, self._factors = self._factors, None
             if last is None or not last.replace(matrix):
-                before, self._places = self._places, (matrix.indptr, matrix.indices)
-                again = before is not None and all(map(np.array_equal, before, self._places))
+                before, self._places = self._places, EntryPlaces.of(matrix)
+                again = before is not None and before.are_of(matrix)
                 if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
                     return _checked(matrix, loads)
                 last = PardisoFactors(matrix, single=False)
