@@ -55,6 +55,21 @@ def is_poor(sides: np.ndarray, radii: np.ndarray, smallest_angle: float) -> np.n
     return np.asarray(radii > sides.min(axis=1) / (2 * np.sin(smallest_angle)))
 
 
+def improvements(
+    points: np.ndarray, edges: np.ndarray, poor: np.ndarray, radii: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Circumcentres (j, 2) worth adding of poor triangles (m, 3), and the mask of edges to halve instead."""
+    if not len(poor):
+        return np.empty((0, 2)), np.zeros(len(edges), bool)
+    order = np.argsort(-radii)
+    centre, reach = circumcentres(points[poor])[order], radii[order]
+    within, halve = entering(points, edges, centre)
+    # without obtuse angles at the outline none lies outside but by rounding
+    low, high = points.min(axis=0), points.max(axis=0)
+    free = ((centre > low) & (centre < high)).all(axis=1) & ~within
+    return independent(centre[free], reach[free]), halve
+
+
 def entering(
     points: np.ndarray, edges: np.ndarray, centres: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -23,11 +23,9 @@ from flexspline.fea.axisymmetric.meridian_mesh import (
     signed_areas,
 )
 from flexspline.fea.axisymmetric.ruppert import (
-    circumcentres,
     circumradii,
     encroached,
-    entering,
-    independent,
+    improvements,
     is_flat,
     is_poor,
     lengths,
@@ -154,12 +152,7 @@ def _improvements(
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     radius = circumradii(sides, signed_areas(points, triangles))
     poor = is_poor(sides, radius, SMALLEST_ANGLE)
-    if not poor.any():
-        return np.empty((0, 2)), np.zeros(len(edges), bool)
-    order = np.argsort(-radius[poor])
-    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
-    within, halve = entering(points, edges, centre)
-    return independent(centre[~within], reach[~within]), halve
+    return improvements(points, edges, triangles[poor], radius[poor])
 
 
 def _checked(

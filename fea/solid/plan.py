@@ -16,11 +16,9 @@ from scipy.spatial import Delaunay
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, edge_lengths, signed_areas
 from flexspline.fea.axisymmetric.ruppert import (
     TOUCH,
-    circumcentres,
     circumradii,
     encroached,
-    entering,
-    independent,
+    improvements,
     is_flat,
     is_poor,
 )
@@ -91,20 +89,13 @@ def _improvements(
     own: PlanEdges, triangles: np.ndarray, smallest_mm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
-    corner, sides = own.points[triangles], edge_lengths(own.points, triangles)
+    sides = edge_lengths(own.points, triangles)
     radius = circumradii(sides, signed_areas(own.points, triangles))
-    scale = np.exp(corner[:, :, 0].mean(axis=1))
+    scale = np.exp(own.points[triangles, 0].mean(axis=1))
     poor = is_poor(sides, radius, SMALLEST_PLAN_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
-    if not poor.any():
-        return np.empty((0, 2)), np.zeros(len(own.ends), bool)
-    order = np.argsort(-radius[poor])
-    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
-    within, halve = entering(own.points, own.ends, centre)
-    low, high = own.points.min(axis=0), own.points.max(axis=0)
-    free = ((centre > low) & (centre < high)).all(axis=1) & ~within
+    added, halve = improvements(own.points, own.ends, triangles[poor], radius[poor])
     middle = own.points[own.ends].mean(axis=1)
-    halve &= own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm
-    return independent(centre[free], reach[free]), halve
+    return added, halve & (own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm)
 
 
 def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
