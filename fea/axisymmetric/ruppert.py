@@ -64,7 +64,7 @@ def improvements(
     order = np.argsort(-radii)
     centre, reach = circumcentres(points[poor])[order], radii[order]
     within, halve = entering(points, edges, centre)
-    # without obtuse angles at the outline none lies outside but by rounding
+    # while no point is inside an edge's circle, no centre lies beyond the edges, but for rounding
     low, high = points.min(axis=0), points.max(axis=0)
     free = ((centre > low) & (centre < high)).all(axis=1) & ~within
     return independent(centre[free], reach[free]), halve
