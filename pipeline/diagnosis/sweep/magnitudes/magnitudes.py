@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -21,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
 )
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.magnitudes.between_sets_std import std_over
 from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
@@ -86,20 +88,17 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
 
 
 def _spring_std(identified: Identification, magnitude: float) -> float:
-    """Of a spring's size, by laws of other causes that fit as well and leave it another one.
+    """Of a spring's size, by laws of other causes that fit as well and leave it another one."""
+    others = _but_for_a_spring(identified.search.evidence, identified.best)
+    return std_over(identified, others, SERIES, magnitude)
 
-    Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
-    says: they count alike. What the prior says of larger springs is no evidence of the smaller.
+
+def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[Candidate]:
+    """The best set with a term's shape replaced by one that leaves the spring another size.
+
+    All have the best set's score. No row says whether friction takes torque at a loop's ends, or at which
+    load the stiffness is as simulated. That the prior prefers larger springs is no evidence of the smaller.
     """
-    evidence, best = identified.search.evidence, identified.best
-    others = list(_but_for_a_spring(evidence, best))
-    sizes = [fit_regressors(evidence, terms).magnitudes()[SERIES] for terms in others]
-    off = np.array(sizes) - magnitude
-    return float(np.sqrt((off**2).sum() / (1 + len(off))))
-
-
-def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
-    """Sets with a term's shape replaced by one that leaves the spring another size."""
     at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
     for place, i in enumerate(best.terms):
         term = evidence.terms[i]
@@ -107,7 +106,7 @@ def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[t
         for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
             other = at.get(shape_key(term.owner, shape))
             if other is not None:
-                yield (*best.terms[:place], other, *best.terms[place + 1 :])
+                yield replace(best, terms=(*best.terms[:place], other, *best.terms[place + 1 :]))
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:
