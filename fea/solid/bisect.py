@@ -1,9 +1,9 @@
 """Bisection of tetrahedron edges, with all elements and facets that contain them.
 
-Edges are ranked by length, of equal ones by number. Each tetrahedron is halved at the highest of its edges
-that are asked for, as in bisection of longest edges (Rivara, Int. J. Numer. Methods Eng. 20, 1984, 745-756),
-and its halves at theirs. What becomes of a face follows from its own edges alone: both its tetrahedra, and
-the boundary's facet, are cut alike.
+Edges are ranked by length; equal lengths are ranked by number. Each tetrahedron is halved at the
+highest-ranked of its edges that are to be halved, as in bisection of longest edges (Rivara, Int. J. Numer.
+Methods Eng. 20, 1984, 745-756), and its halves at theirs. How a face is cut depends on its own edges alone,
+so both its tetrahedra and the boundary's facet are cut in the same way.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ PAIRS = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 class Simplices:
     """Tetrahedra (m, 4), positive, and facets (k, 3), outward, each on a surface (k,), of `nodes` nodes.
 
-    `parents` (m,): of halved ones, the tetrahedron that each is a part of.
+    `parents` (m,), after halving: the tetrahedron of the mesh before that each is a part of.
     """
 
     nodes: int
@@ -42,7 +42,8 @@ def halved(
 ) -> tuple[Simplices, np.ndarray]:
     """The mesh with those of its edges (e, 2) halved that are `asked` (e,); `lengths` (e,) rank them.
 
-    Also the edges (j, 2) that were: the nodes between are numbered from `mesh.nodes` on, in their order.
+    Also returns the halved edges (j, 2). Their new middle nodes are numbered from `mesh.nodes` on, in this
+    order.
     """
     if not np.any(asked):
         return replace(mesh, parents=np.arange(len(mesh.tets))), edges[:0]

@@ -21,9 +21,11 @@ from flexspline.geometry.outline import SAME_mm, joins_smoothly
 from flexspline.geometry.surfaces import Surface, Swept
 
 NEAR_EDGE_SHARE = 0.3
-"""An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
+"""A node moves onto the patch edge if it is nearer than this share of the crossing mesh edge. Judgement: a
+cut so near to a node leaves flat elements, a node that moves farther bends its neighbours."""
 SLIP = 0.1
-"""Share of its way by which a moved node may leave another surface: along a curved one, not across one."""
+"""How far a moved node may leave another surface, as a share of its move. Moves along a curved surface stay
+below it, moves across a surface do not. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import Surface
 
 BENT_ROUNDS = 5
-"""Of halving bent edges; their number falls from round to round, or no more are."""
+"""Most rounds of halving bent edges. Judgement: their number falls from round to round, else the rounds
+end."""
 BENT_SHARE = 0.015
 """Of an edge's length: how far its middle lies off the straight line, where halving helps: an arc of 7°
 has so much. Of what loses less, a few edges may be straight within the check of areas. With twice as much, a

@@ -14,7 +14,8 @@ from flexspline.geometry.outline import SAME_mm, Segment, SMOOTH_rad, joins_smoo
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Surface, Swept
 
 INSIDE_CORNER = 0.1
-"""Sine of the angle by which a facet must rise over its neighbour's plane: an inside corner, not rounding."""
+"""A corner is an inside corner if a facet rises over its neighbour's plane by an angle with at least this
+sine. Judgement: 6°, far above rounding and below the corners of parts."""
 ALONG = 5
 """Points along an edge where stress is singular, from which distances are measured."""
 

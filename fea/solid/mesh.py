@@ -22,12 +22,13 @@ from flexspline.geometry.percent import percent
 from flexspline.geometry.tagged import TaggedSurface
 
 ASTRAY_SHARE = 0.002
-"""Of the boundary: a few facets across sharp edges; a crack along a cut would be many."""
+"""Share of the boundary that may face another way than the CAD. A few facets across sharp edges do; a crack
+along a cut would be many facets."""
 ENVELOPES_PER_EDGE = 6
-"""The envelope stays this much below the smallest edge: above it the mesher's surface has cracked."""
+"""Smallest edge over the envelope, at least. With wider envelopes the mesher's surface has cracked."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
-"""Edge lengths of the attempts at a mesh, over those asked for, and whether they may be in unrolled space:
-other edges make another mesh, and the last attempt does without the unrolling."""
+"""For each attempt at a mesh: its edge lengths over those asked for, and whether it may use unrolled space.
+Other edges make another mesh, and the last attempt does without the unrolling."""
 
 
 @dataclass(frozen=True)

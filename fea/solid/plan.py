@@ -27,16 +27,19 @@ from flexspline.fea.solid.plan_curves import Curve
 from flexspline.fea.solid.plan_edges import PlanEdges
 
 SMALLEST_PLAN_ANGLE = np.radians(20)
-"""Of large triangles: what Ruppert's proof covers."""
+"""Smallest angle of large triangles: the limit of Ruppert's proof."""
 FLATTENED_TRIANGLE = 0.3
-"""Of a triangle's area in the map: one that keeps less with straight sides lies along too long an arc."""
+"""Share of its area in the map that a triangle must keep with straight sides; if it keeps less, it lies along
+too long an arc. Judgement."""
 OFF_LINE = 0.12
-"""Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
-middle node moved by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
+"""How far the middle of a line may lie off the middle of its mesh edge, towards the triangle, as a share of
+the triangle's height. Half of 1/4: a middle node moved by 1/4 of the height makes the Jacobian 0 at the
+edge's ends."""
 PLAN_ROUNDS = 60
-"""Plans of 150 random shafts took 30 at most."""
+"""Most rounds. Plans of 150 random shafts took 30 at most."""
 PLAN_POINTS = 4_000
-"""A plan is repeated for each layer: more, and lines lie too near each other."""
+"""Most points of a plan, which is repeated for each layer. If it needs more, its lines lie too near each
+other. Judgement."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class PlanMesh:
 def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> PlanMesh:
     """The sector from angle 0 to `sector` [rad], between the least and the largest radius of its lines.
 
-    Of `curves`, the bounds of the sector are some. Triangles whose sides are below `smallest_mm` may be poor.
+    The bounds of the sector are among `curves`. Triangles whose sides are below `smallest_mm` may be poor.
 
     Raises
     ------
@@ -101,7 +104,7 @@ def _improvements(
 def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middles (j, 2) of the longest sides of triangles that straight sides flatten, or the edges to halve.
 
-    Edges are too that lie too far off their line for the triangles beside them.
+    Edges that lie too far off their line for the triangles beside them are halved too.
     """
     u, phi = own.points.T
     n = len(own.points)

@@ -42,8 +42,8 @@ from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import Surface, part_surfaces
 
 STRAIGHT_OF_LAND = 0.05
-"""Of the land between a keyway's floor and the bore: how far off its surface a straight edge may be. One of
-0.05 mm was 0.072 mm thick so, and K 1.7 % too high, where ± 0.15 % was said."""
+"""Of the land between a keyway's floor and the bore: how far off its surface a straight edge may be. A land
+of 0.05 mm came out 0.072 mm thick, and K was 1.7 % too high where ± 0.15 % was reported."""
 LARGEST_SWEPT_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
 PolarMap = Callable[[np.ndarray], np.ndarray]

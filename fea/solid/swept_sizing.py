@@ -16,9 +16,10 @@ from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
 
 PLAN_EDGE = 1.2
-"""Largest edge in the plan beside a hole, in hole radii: five go around it at least."""
+"""Largest edge in the plan beside a hole, in hole radii. At least five edges then go around the hole."""
 MOST_ELEMENTS = 500_000
-"""2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
+"""Most elements of a mesh: 2 million unknowns and 16 GB. Only parts of extreme proportions need more; they
+are refused before the mesh is built."""
 
 
 @dataclass(frozen=True)
