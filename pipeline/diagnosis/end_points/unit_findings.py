@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of an angle reading that a file may show [arcsec]: round steps of displays; finer count as none."""
 LARGEST_P_VALUE = 1 - 1e-15
-"""The last double but a few below 1, where the logarithm of 1 − p still is a number."""
+"""Largest probability p that is used: a few doubles below 1, so that the logarithm of 1 − p is finite."""
 
 
 def unit_deviations(
