@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
 
 SIZE_KNOWN = 2.0
-"""Standard deviations from no effect: a size nearer is compatible with none."""
+"""Standard deviations from no effect. A smaller size is compatible with none."""
 
 
 @dataclass(frozen=True)

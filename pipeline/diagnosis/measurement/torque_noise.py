@@ -11,13 +11,13 @@ from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 LARGEST_NOISE = 0.02
-"""Of the largest torque: what looks like more is no noise."""
+"""Largest noise over the largest torque. What looks like more is not noise. Judgement."""
 COARSE_STEP = (1e-3, 0.035)
 """Of the largest torque: what is read in smaller steps is not seen to be, larger ones are a programme's."""
 FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
 STEP_SHARE = 0.01
-"""Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
+"""Share of a step within which two levels count as whole steps apart: decimals differ by their last bit."""
 UNLIKE_RATIO, LEAST_OF_TYPICAL = 2.0, 0.05
 """Times the typical noise from which cycles have their own: by chance one of 24 rows has 1.5 times as much;
 and of the typical one at least: a way of few rows is not known better."""

@@ -1,4 +1,4 @@
-"""Readings of a sweep that no gear and no programme made: a sensor's code for a fault, a slipped digit.
+"""Readings of a sweep that come from no gear or programme: a sensor's code for a fault, a slipped digit.
 
 One torque of 1e6 N·m is the largest of its record, by which every share of torque is measured, so such rows
 go before anything is computed. What a model leaves is looked at later (`outliers.py`).
@@ -23,7 +23,7 @@ FAR_RATIO = 3.0
 """Times as far from the median as every other reading: a programme goes to its largest torque by steps, and a
 gear by its slope. Only what stands alone or repeats itself is asked, and only against another channel."""
 LEAP_K = 50.0
-"""From one row to the next and back: an oven needs minutes for it, a gear hours."""
+"""[K] Leap from one row to the next and back. An oven needs minutes for it, a gear hours."""
 GEAR_C = Range(-197.0, 400.0)
 """Liquid nitrogen, in which gears for space are tested, boils at −196 °C; above 400 °C no grease and no film
 of MoS2 is left. The codes of a broken Pt100 (−200, 850 °C) lie outside."""
@@ -44,7 +44,7 @@ class WrongReadings:
 
     @property
     def rows_left_out(self) -> int:
-        """Of a wrong temperature the row stays."""
+        """A row with a wrong temperature stays."""
         return 0 if self.name == "temperature_C" else len(self.lines)
 
 

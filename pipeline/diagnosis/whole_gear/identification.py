@@ -45,7 +45,7 @@ from flexspline.pipeline.gear.gear_chain import Chain
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0
-"""Deviations of a place by which two rivals must differ to be told apart there."""
+"""Standard deviations by which two rivals must differ at a torque to be distinguished there."""
 InputsVerdict = Literal["consistent", "named", "pair", "unknown"]
 
 
