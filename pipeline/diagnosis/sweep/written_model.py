@@ -31,7 +31,7 @@ from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 CROSSING_WIDTHS, NARROWEST_CROSSING = 24, 0.01
 """Widths tried of the gap's crossing, up to the band of rows that no fit uses, and the least of that band."""
 SPREAD_NATS = 3.0
-"""Over no width, from which one is told: odds of 20 to 1."""
+"""[nats] Least evidence over no width at which a width is written: odds of 20 to 1."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ OF_TORQUE_NOISE = 0.7
 """Of what the torque's noise is in the angle: the noise drives a memory too, and leaves a trace of it up to
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
 TOGETHER_RATIO = 3.0
-"""Times that many effects may be larger, each for itself, than what they are together."""
+"""How much larger than their sum many effects may be, each by itself. Judgement."""
 CURVES = {SERIES: 1, HARDENING: 2}
 """Causes whose angle is a curve over the torque, and what of such a curve may be the gear's own: its zero;
 of a hardening its compliance too. As powers of the torque below that one."""

@@ -1,4 +1,4 @@
-"""Magnitudes of what is named, and how far each may be off: all sets that explain the record count."""
+"""Magnitudes of the named causes and their standard deviations, by all sets that explain the record."""
 
 from __future__ import annotations
 
@@ -33,11 +33,13 @@ SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
 the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
-"""Sets that count by less than e^−6 = 0.25 % are left out."""
+"""Sets with a weight below e^−6 = 0.25 % are left out."""
 NEAR_ZERO = 0.15
-"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
+"""Share of the largest torque. Rows within it show the width of a loop at T = 0, whatever shape was found.
+Judgement."""
 MOST_SHAPES = 24
-"""Of these sets at most, the likeliest: each is fitted again for its deviation."""
+"""Most of these sets, the likeliest ones. Each is fitted again for its standard deviation. Judgement: it
+limits the time."""
 
 
 def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
@@ -88,7 +90,7 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
 
 
 def _spring_std(identified: Identification, magnitude: float) -> float:
-    """Of a spring's size, by laws of other causes that fit as well and leave it another one."""
+    """Standard deviation of a spring's size, by laws of other causes that fit as well with another spring."""
     others = _but_for_a_spring(identified.search.evidence, identified.best)
     return std_over(identified, others, SERIES, magnitude)
 
@@ -110,7 +112,8 @@ def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[C
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:
-    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
+    """Standard deviation of a loop's width at T = 0 by the rows next to it: a difference of two means, each
+    of half of the rows."""
     history = evidence.columns.rig.history
     near = np.abs(history.torque_Nm) < NEAR_ZERO * history.largest_Nm
     rows = max(1, int((near & evidence.kept).sum()))

@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.structure import Slip
 
 LOADED_SHARE = 0.6
-"""Of the largest torque: beyond it the gear is loaded, below it the gap is crossed."""
+"""Share of the largest torque. Beyond it the gear is loaded, below it the gap is crossed. Judgement."""
 MOST_TIMES = 5.0
 """Of the twist between `LOADED_SHARE` and the largest torque: a friction loop as wide as half the whole twist
 has 1.25, one as wide as all of it 2.5."""
