@@ -1,4 +1,4 @@
-"""Some entries of sparse matrices that have their entries at the same places: those places are found once."""
+"""Entries of sparse matrices with the same pattern: where they stand is found once."""
 
 from __future__ import annotations
 

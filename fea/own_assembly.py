@@ -16,7 +16,7 @@ from skfem.mapping import MappingIsoparametric
 
 LARGEST = np.iinfo(np.int64).max
 NEAREST = (8, 64)
-"""Triangles by their centres that a point is looked for in, before all of them."""
+"""Triangles with the nearest centres in which a point is searched first, then all triangles. Judgement."""
 CANDIDATES = 1_000_000
 """Pairs of point and triangle at once: 100 MB."""
 TOUCH = 1e-9

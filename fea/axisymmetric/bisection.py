@@ -20,7 +20,7 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
 
 
 def refined_while(mesh: MeridianMesh, marked: Callable[[MeridianMesh], np.ndarray]) -> MeridianMesh:
-    """The mesh refined until `marked` gives no triangle of it any more (a mask (m,))."""
+    """The mesh refined until `marked`, a mask (m,) of its triangles, is empty."""
     while (now := marked(mesh)).any():
         mesh = refined(mesh, now)
     return mesh

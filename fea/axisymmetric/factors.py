@@ -15,14 +15,15 @@ from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 PARDISO_AT_ONCE_FROM = 8_000
-"""Unknowns from which oneMKL's Pardiso takes less time than SuperLU even for one matrix alone, where it is:
-147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of that, on a busy
-machine. Below, Pardiso begins with the second matrix of the same places: of 1 200, 1 600, 4 400 and 5 800
-unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0, 2.7, 11.3 and 15.1, and 0.5,
-0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress and about five for lobes."""
+"""Unknowns from which oneMKL's Pardiso, if it is installed, is faster than SuperLU even for a single
+matrix: 147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of
+that, on a busy machine. Below, Pardiso is used from the second matrix with the same places on: of 1 200,
+1 600, 4 400 and 5 800 unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0,
+2.7, 11.3 and 15.1, and 0.5, 0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress
+and about five for lobes."""
 LARGEST_RESIDUAL = 1e-3
-"""‖Ku − f‖/‖f‖ of SuperLU's solution. Of 252 meridians of cups it was 6e-12 at most, of a thin ring, whose
-condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.015 to 5."""
+"""Largest ‖Ku − f‖/‖f‖ of SuperLU's solution. It was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
+thin ring with a condition number of 1e10, and 0.015 to 5 for grids of springs that were held nowhere."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ class _FreeEntries:
 
 
 class PatternSolver:
-    """Of symmetric positive definite systems; an ordering that Pardiso made stays while the places do."""
+    """Solves symmetric positive definite systems. Pardiso's ordering is kept as long as the entries' places
+    stay."""
 
     def __init__(self) -> None:
         self._entries: _FreeEntries | None = None

@@ -18,8 +18,8 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 LATTICE_STEPS = 8
-"""Stress is looked at on a lattice of so many steps along each side of a triangle: the top of a parabola is
-missed by 1/64 of its height over the side at most."""
+"""Steps along each side of a triangle of the lattice on which stress is evaluated. The top of a parabola is
+missed by at most 1/64 of its height over the side."""
 
 
 BULGE = 1.25

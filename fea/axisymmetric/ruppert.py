@@ -1,7 +1,7 @@
 """Steps of Delaunay refinement (Ruppert, J. Algorithms 18, 1995, 548-585), shared by meridian and plan.
 
-Points are (n, 2), triangles (m, 3) counter-clockwise, edges (k, 2) of point numbers: of those lines
-that the mesh must keep.
+Points are (n, 2), triangles (m, 3) counter-clockwise, edges (k, 2) the point numbers of the lines that the
+mesh must keep.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from flexspline.fea.axisymmetric.meridian_mesh import edge_lengths, signed_areas
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 FLAT_SHARE = 1e-9
-"""A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
-the hull, between points of one straight segment, turned either way."""
+"""A triangle with less area than this share of its longest side squared is a line. Rounding leaves such
+triangles on the hull, between points of one straight segment, turned either way."""
 TOUCH = 1e-7
 """Relative slack of circle tests: cocircular points of right angles and rectangles count as outside."""
 

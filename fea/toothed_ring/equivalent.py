@@ -20,8 +20,9 @@ GRADING = 3.3
 """At the root's notch edges shrink with this power of the others: the energy that a corner of 250°
 loses falls with the edge there to the power 1.2, quadratic elements elsewhere with the fourth."""
 LARGEST_CHANGE = 1e-3
-"""What is accepted where the next mesh would be too large: thin rims under wide teeth, where every corner
-counts. A tenth of a percent of the thickness is below what anybody can make."""
+"""Largest relative change that is accepted if the next mesh would be too large. It happens with thin rims
+under wide teeth, where every corner counts. A tenth of a percent of the thickness is below any tolerance of
+manufacture."""
 MOST_TRIANGLES = 100_000
 """Some 15 s of one core; the next mesh has four times as many and takes as many minutes."""
 
