@@ -92,16 +92,21 @@ def condensed_rim(
         *along(model, "seat", seat),
     ]
     shares = (shares_along(model, patch, z) for patch, z in (("mesh", face), ("seat", seat)))
-    surface = float(model.space.places[model.on("mesh"), 0].mean())
     rim = Rim(condensed(model, ports, last), *shares)
-    lift = (pitch_radius - surface) / surface
-    return replace(rim, body=at_pitch_point(rim.body, rim.radial, rim.tangential, lift))
+    body = at_pitch_point(model, pitch_radius, rim.body, rim.radial, rim.tangential)
+    return replace(rim, body=body)
 
 
 def at_pitch_point(
-    body: Condensed, radial: np.ndarray, tangential: np.ndarray, lift: float
+    model: HarmonicModel,
+    pitch_radius: float,
+    body: Condensed,
+    radial: np.ndarray,
+    tangential: np.ndarray,
 ) -> Condensed:
-    """Ports of a toothed surface, (f,) each, moved to the pitch point `lift` surface radii over it."""
+    """Ports of a model's toothed surface, (f,) each, moved to the pitch point over it."""
+    surface = float(model.space.places[model.on("mesh"), 0].mean())
+    lift = (pitch_radius - surface) / surface
     harmonics = body.harmonics.copy()
     for i, part in enumerate(harmonics):
         lever = np.eye(len(part))

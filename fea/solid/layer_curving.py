@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
+from flexspline.fea.solid.facet_surfaces import patches_of
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
 from flexspline.fea.solid.quadratic import (
@@ -76,9 +77,8 @@ def quadratic(
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)
     nodes = straightened_too(nodes, ratio, cells, edges)
-    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
-    facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
-    return LayeredMesh(nodes, cells, facets, facet_patch, names, sector_deg, mesh.facet_surface)
+    patches = patches_of(mesh.facet_surface, surfaces)
+    return LayeredMesh(nodes, cells, facets, *patches, sector_deg, mesh.facet_surface)
 
 
 def _curved(

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.errors import MeshQualityError
+from flexspline.fea.solid.facet_surfaces import patches_of
 from flexspline.fea.solid.imprint import MesherMesh, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
@@ -153,8 +154,7 @@ def _quadratic(
     )
     nodes[:n] = corners
     nodes = straightened(nodes, cells, edges, facets)
-    names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
-    facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
-    made = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
+    patches = patches_of(facet_surface, surface.surfaces)
+    made = TetMesh(nodes, cells, facets, *patches, surface.sector_deg)
     check_against_cad(made, surface)
     return made

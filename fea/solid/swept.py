@@ -18,7 +18,7 @@ from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, HoledColumn, column_of
-from flexspline.fea.solid.facet_surfaces import surfaces_of
+from flexspline.fea.solid.facet_surfaces import patches_of, surfaces_of
 from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.mesh_checks import VOLUME, check_sizes
@@ -167,9 +167,7 @@ def _curved(
     nodes = straightened(nodes, cells, edges, facets)
     if block is not None:
         _refuse_thick_land(nodes, facets, facet_surface, surfaces, block)
-    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
-    facet_patch = np.array([names.index(s.patch) for s in surfaces])[facet_surface]
-    mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
+    mesh = TetMesh(nodes, cells, facets, *patches_of(facet_surface, surfaces), sector_deg)
     check_sizes(mesh, _sizes(part, sector_deg, column, block))
     return mesh
 

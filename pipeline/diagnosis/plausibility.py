@@ -211,7 +211,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | No
     simulated = prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm)
     if not np.all(simulated > 0):
         return None
-    ratio = float(np.median((points.angle_plus_arcsec - points.angle_minus_arcsec) / simulated))
+    ratio = float(np.median(points.total_arcsec / simulated))
     if _beyond(abs(ratio)):
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)

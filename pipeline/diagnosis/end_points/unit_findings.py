@@ -27,7 +27,7 @@ def unit_deviations(
     """Deviations of all rows, and the units' names in their order."""
     names = tuple(dict.fromkeys(points.unit))
     code = {name: i for i, name in enumerate(names)}
-    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    total = points.total_arcsec
     angles = np.concatenate([points.angle_plus_arcsec, points.angle_minus_arcsec])
     deviations = UnitDeviations(
         total - prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm),
@@ -58,7 +58,7 @@ def unit_findings(
     """Every unit at the torque where it is furthest out."""
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
-    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    total = points.total_arcsec
     found = []
     for name, rows in zip(names, deviations.unit_rows, strict=True):
         p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]

@@ -27,10 +27,8 @@ would at an even pace: on a staircase it stays as the angle does."""
 
 def held_rows(table: MeasuredTable) -> np.ndarray:
     """(n,) rows of a sweep whose angle is the one before, where its channel is slow; each unit by itself."""
-    names = np.array(table.labels.get("unit", ("",) * len(table)))
     held = np.zeros(len(table), bool)
-    for name in np.unique(names):
-        rows = np.flatnonzero(names == name)
+    for rows in table.unit_rows():
         held[rows] = _held(table.numbers["torque_Nm"][rows], table.numbers["angle_arcsec"][rows])
     return held
 

@@ -106,6 +106,11 @@ class EndPoints:
     angle_minus_arcsec: np.ndarray
     read_as: ReadAs = AS_OURS
 
+    @property
+    def total_arcsec(self) -> np.ndarray:
+        """(n,) from −T to +T."""
+        return self.angle_plus_arcsec - self.angle_minus_arcsec
+
     def rows(self, chosen: np.ndarray) -> EndPoints:
         """The chosen rows (indices)."""
         return replace(

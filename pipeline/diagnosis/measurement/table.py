@@ -47,6 +47,11 @@ class MeasuredTable:
         """Whether all these columns exist."""
         return all(n in self.numbers or n in self.labels for n in names)
 
+    def unit_rows(self) -> list[np.ndarray]:
+        """Row indices of each unit under test."""
+        names = np.array(self.labels.get("unit", ("",) * len(self)))
+        return [np.flatnonzero(names == name) for name in np.unique(names)]
+
     def rows(self, chosen: np.ndarray) -> MeasuredTable:
         """The chosen rows (mask)."""
         return replace(

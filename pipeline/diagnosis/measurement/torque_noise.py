@@ -124,10 +124,19 @@ def _rounding_Nm(history: History) -> float:
     levels = np.unique(history.torque_Nm)
     if len(levels) < FEWEST_LEVELS or history.readings is not None:
         return 0.0
-    steps, largest = np.diff(levels), float(np.abs(levels).max())
+    steps = np.diff(levels)
     step = float(np.median(steps))
-    coarse = COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest
-    alike = np.abs(steps / step - np.round(steps / step)) < STEP_SHARE
-    bends = np.concatenate([np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices])
-    restless = (np.abs(bends) > step / 2).sum() > RESTLESS_SHARE * len(history)
-    return step / np.sqrt(12) if coarse and alike.all() and restless else 0.0
+    restless = (np.abs(second_differences_Nm(history)) > step / 2).sum()
+    seen = restless > RESTLESS_SHARE * len(history) and are_coarse(steps, step, history.largest_Nm)
+    return step / np.sqrt(12) if seen else 0.0
+
+
+def are_coarse(apart: np.ndarray, step: float, largest: float) -> bool:
+    """Whether levels are whole steps `apart`, of a size that readings of a `largest` torque may have."""
+    alike = np.abs(apart / step - np.round(apart / step)) < STEP_SHARE
+    return bool(COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest and alike.all())
+
+
+def second_differences_Nm(history: History) -> np.ndarray:
+    """Of the torque from row to row, of all units in turn."""
+    return np.concatenate([np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices])

@@ -77,7 +77,7 @@ def _wrong(
 ) -> np.ndarray:
     """(n,) wrong readings of a column; each unit is asked by itself, as its zero is its own."""
     wrong = np.zeros(len(table), bool)
-    for rows in _units(table):
+    for rows in table.unit_rows():
         wrong[rows] = _wrong_in_unit(table.numbers[name][rows], judge_of(table, rows))
     return wrong
 
@@ -85,7 +85,7 @@ def _wrong(
 def _spikes(table: MeasuredTable) -> np.ndarray:
     """(n,) torques that no gear felt; each unit by itself."""
     found = np.zeros(len(table), bool)
-    for rows in _units(table):
+    for rows in table.unit_rows():
         torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
         found[rows] = torque_spikes(torque, angle)
     return found
@@ -95,16 +95,10 @@ def _bridged(table: MeasuredTable, wrong: np.ndarray) -> MeasuredTable:
     """The table with straight lines in time, or in rows without it, over wrong temperatures."""
     celsius = table.numbers["temperature_C"].copy()
     time = table.numbers.get("time_s", np.arange(len(table), dtype=float))
-    for rows in _units(table):
+    for rows in table.unit_rows():
         bad, good = rows[wrong[rows]], rows[~wrong[rows]]
         celsius[bad] = np.interp(time[bad], time[good], celsius[good])
     return replace(table, numbers={**table.numbers, "temperature_C": celsius})
-
-
-def _units(table: MeasuredTable) -> list[np.ndarray]:
-    """Row indices of each unit."""
-    names = np.array(table.labels.get("unit", ("",) * len(table)))
-    return [np.flatnonzero(names == name) for name in np.unique(names)]
 
 
 def _wrong_in_unit(values: np.ndarray, judge: Judge) -> np.ndarray:
