@@ -13,8 +13,8 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.errors import MeshQualityError, SolidError, TooManyElementsError
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.defaults import surface_to_mesh
-from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.sweeps import goes_about_axis
@@ -144,7 +144,7 @@ class PartMeshes:
             self._failed.add(("layered", spec))
             return None
 
-    def _coarsened_layers(self, spec: MeshSpec) -> LayeredMesh:
+    def _coarsened_layers(self, spec: MeshSpec) -> BisectableMesh:
         """To a specification, or to a coarser one where it has more than FIRST_ELEMENTS elements by that.
 
         As `coarsened`, but that a mesh in layers is given up midway: nothing says how many elements it would
@@ -167,10 +167,10 @@ class PartMeshes:
                 return layered_mesh(part, degrees, before)
         return layered_mesh(part, degrees, spec, self.most_of_first)
 
-    def _of_sweep(self, mesh: TetMesh) -> MeshedPart:
+    def _of_sweep(self, mesh: BisectableMesh) -> MeshedPart:
         model = self.model
         edges = swept_edges(model.part, model.sector.degrees, self._edge_spacing)
-        return MeshedPart(mesh, edges, "layered" if isinstance(mesh, LayeredMesh) else "swept")
+        return MeshedPart(mesh, edges, "layered" if mesh.in_layers else "swept")
 
     def coarsened(self, most_elements: float) -> MeshSpec:
         """The part's first specification, or a coarser one where its swept mesh has more elements than that.

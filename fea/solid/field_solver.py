@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from flexspline.fea.scaled_estimate import MeshResult
-from flexspline.fea.solid.layer_curving import LayeredMesh
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.solved import SolvedCorrection
 from flexspline.fea.solid.stress import energy_error
@@ -32,7 +32,8 @@ class ErrorScales(NamedTuple):
 
     def before_two(self, mesh: TetMesh) -> float:
         """The factor c if this is the only mesh."""
-        return self.in_layers if isinstance(mesh, LayeredMesh) else self.usual
+        in_layers = isinstance(mesh, BisectableMesh) and mesh.in_layers
+        return self.in_layers if in_layers else self.usual
 
 
 FULL_SCALES = ErrorScales(usual=2.0, in_layers=3.5, believed=(1.5, 3.1), by_error=(2.5, 4.2))

@@ -1,15 +1,15 @@
-"""Ten-node tetrahedra of a shaft's layers: curved edges, bisected if they bend an element too far."""
+"""Ten-node tetrahedra of halved elements: curved edges, bisected if they bend an element too far."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 
-from flexspline.fea.errors import TooManyElementsError
+from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.facet_surfaces import patches_of
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
@@ -20,7 +20,7 @@ from flexspline.fea.solid.quadratic import (
     with_middles,
 )
 from flexspline.fea.solid.snap import snap_to_surfaces
-from flexspline.fea.types import TetMesh
+from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.surfaces import Surface
 
 BENT_ROUNDS = 5
@@ -33,33 +33,23 @@ shaft of one segment with five holes kept six straight edges, whose neighbours w
 missed that check; others have at most 4 % more elements with this."""
 
 
-@dataclass(frozen=True)
-class LayeredMesh(TetMesh):
-    """A mesh of a shaft's layers; `facet_surface` (k,) numbers the part's surface of each facet."""
-
-    facet_surface: np.ndarray
-
-    @property
-    def corners(self) -> np.ndarray:
-        """(n, 3) mm."""
-        return self.nodes[: int(self.cells[:, :4].max()) + 1]
-
-    @property
-    def simplices(self) -> Simplices:
-        """Of the corners."""
-        tets, facets = self.cells[:, :4], self.facets[:, :3]
-        return Simplices(len(self.corners), tets, facets, self.facet_surface)
-
-
 def quadratic(
-    points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], sector_deg: float, most: float
-) -> LayeredMesh:
+    points: np.ndarray,
+    mesh: Simplices,
+    surfaces: Sequence[Surface],
+    sector_deg: float,
+    most: float,
+    in_layers: bool,
+) -> BisectableMesh:
     """Ten-node tetrahedra; edges of the surface that bend one too far are halved, and straight in the end.
 
     Raises
     ------
-    TooManyElementsError : more than `most`. MeshQualityError : elements are bent too far nevertheless.
+    MeshQualityError : elements are flat, or bent too far nevertheless.
+    TooManyElementsError : more than `most`.
     """
+    if (signed_volumes(points, mesh.tets) <= 0).any():
+        raise MeshQualityError("elements are flat once their nodes are on the part's surfaces")
     before = inf
     for left in reversed(range(BENT_ROUNDS + 1)):
         nodes, ratio, edges, cells, facets = _curved(points, mesh, surfaces)
@@ -78,7 +68,7 @@ def quadratic(
         points = with_middles_of(points, mesh, cut_edges, surfaces)
     nodes = straightened_too(nodes, ratio, cells, edges)
     patches = patches_of(mesh.facet_surface, surfaces)
-    return LayeredMesh(nodes, cells, facets, *patches, sector_deg, mesh.facet_surface)
+    return BisectableMesh(nodes, cells, facets, *patches, sector_deg, mesh.facet_surface, in_layers)
 
 
 def _curved(

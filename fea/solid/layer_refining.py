@@ -1,4 +1,4 @@
-"""Refines a layered mesh of a shaft at the places of its solution's error.
+"""Refines a mesh of a part with holes or a keyway at the places of its solution's error.
 
 Elements with the largest errors are halved in rounds. After each, the parts have the errors that theory
 promises, so that a singular edge with most of the error is refined several times in one mesh.

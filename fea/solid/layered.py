@@ -7,18 +7,15 @@ mesh.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf, radians
 
 import numpy as np
 
-from flexspline.fea.errors import MeshQualityError
-from flexspline.fea.solid.bisect import Simplices
-from flexspline.fea.solid.layer_curving import LayeredMesh, quadratic
+from flexspline.fea.solid.bisectable import BisectableMesh
+from flexspline.fea.solid.layer_curving import quadratic
 from flexspline.fea.solid.layer_edges import seams_of
 from flexspline.fea.solid.layer_grading import graded
 from flexspline.fea.solid.layer_mesh import coarsest
-from flexspline.fea.solid.layer_refining import refined
 from flexspline.fea.solid.layer_sizes import face_area, volume, wall_area
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec
@@ -27,14 +24,13 @@ from flexspline.fea.solid.polar import cartesian, polar
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import common_point
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
-from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.part import Part
-from flexspline.geometry.surfaces import Surface, part_surfaces
+from flexspline.geometry.surfaces import part_surfaces
 
 
 def layered_mesh(
     part: Part, sector_deg: float, spec: MeshSpec, most_elements: float = inf
-) -> LayeredMesh:
+) -> BisectableMesh:
     """Mesh of a shaft's sector, graded as `spec` says.
 
     Raises
@@ -48,35 +44,19 @@ def layered_mesh(
     most = min(most_elements, MOST_ELEMENTS)
     points, mesh = coarsest(layers, surfaces, grading, most)
     points, mesh = graded(points, mesh, surfaces, grading, most)
-    return _curved(points, mesh, layers, surfaces, sector_deg, most)
+    made = quadratic(points, mesh, surfaces, sector_deg, most, in_layers=True)
+    check_layered(made, part)
+    return made
 
 
-def finer_layers(part: Part, mesh: LayeredMesh, error: np.ndarray, wanted: float) -> LayeredMesh:
-    """The mesh with so many elements as are `wanted`, shorter edges where its elements' errors (m,) are.
+def check_layered(mesh: BisectableMesh, part: Part) -> None:
+    """Compare volume and patch areas with integrals over the cross-sections.
 
     Raises
     ------
-    MeshQualityError, TooManyElementsError : as `layered_mesh`.
+    MeshQualityError : one of them is off.
     """
-    surfaces = part_surfaces(part, mesh.sector_deg)
-    points, finer = refined(mesh.corners, mesh.simplices, surfaces, error, wanted)
-    layers = Layers.of(part, radians(mesh.sector_deg))
-    return _curved(points, finer, layers, surfaces, mesh.sector_deg, MOST_ELEMENTS)
-
-
-def _curved(
-    points: np.ndarray,
-    mesh: Simplices,
-    layers: Layers,
-    surfaces: Sequence[Surface],
-    sector_deg: float,
-    most: float,
-) -> LayeredMesh:
-    if (signed_volumes(points, mesh.tets) <= 0).any():
-        raise MeshQualityError("elements are flat once their nodes are on the part's surfaces")
-    made = quadratic(points, mesh, surfaces, sector_deg, most)
-    check_sizes(made, _sizes(layers))
-    return made
+    check_sizes(mesh, _sizes(Layers.of(part, radians(mesh.sector_deg))))
 
 
 def _sizes(layers: Layers) -> dict[str, float]:

@@ -13,7 +13,12 @@ from flexspline.fea.solid.imprint import MesherMesh, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading, graded_background
-from flexspline.fea.solid.snap import into_sector_planes, snap_to_surfaces, undo_inverted
+from flexspline.fea.solid.snap import (
+    into_sector_planes,
+    snap_middles,
+    snap_to_surfaces,
+    undo_inverted,
+)
 from flexspline.fea.solid.tetwild import MESHER_SECONDS, TetwildSettings, tetrahedralize
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
@@ -139,7 +144,7 @@ def _quadratic(
     mesh: MesherMesh, surface: TaggedSurface, space: MeshingMap, spec: MeshSpec
 ) -> TetMesh:
     """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
-    n, tets, faces, facet_surface = len(mesh.points), mesh.tets, mesh.faces, mesh.facet_surface
+    tets, faces, facet_surface = mesh.tets, mesh.faces, mesh.facet_surface
     raw = into_sector_planes(
         space.back(mesh.points), faces, facet_surface, surface.surfaces, surface.sector_deg
     )
@@ -149,10 +154,14 @@ def _quadratic(
     edges, cells, facets = with_middles(corners, tets, faces)
     # a middle follows its corners in meshing space, then goes onto the surface itself
     middles = space.back(space.to(corners)[edges].mean(axis=1))
-    nodes = snap_to_surfaces(
-        np.vstack([corners, middles]), facets, facet_surface, surface.surfaces, spec.snap_limit
+    nodes = snap_middles(
+        np.vstack([corners, middles]),
+        edges,
+        facets,
+        facet_surface,
+        surface.surfaces,
+        spec.snap_limit,
     )
-    nodes[:n] = corners
     nodes = straightened(nodes, cells, edges, facets)
     patches = patches_of(facet_surface, surface.surfaces)
     made = TetMesh(nodes, cells, facets, *patches, surface.sector_deg)

@@ -41,12 +41,44 @@ def snap_to_surfaces(
     out = points.copy()
     for owners, nodes in _nodes_by_surfaces(faces, facet_surface).items():
         group = [surfaces[i] for i in owners]
-        moved, settled = common_point(points[nodes], group)
-        fine = settled & (np.linalg.norm(moved - points[nodes], axis=1) <= limit)
-        out[nodes[fine]] = moved[fine]
-        if len(group) > 1 and not fine.all():
-            out[nodes[~fine]] = _nearest_alone(points[nodes[~fine]], group, limit)
+        out[nodes] = _snapped(points[nodes], group, limit, np.ones(len(nodes), bool))
     return out
+
+
+def snap_middles(
+    nodes: np.ndarray,
+    edges: np.ndarray,
+    facets: np.ndarray,
+    facet_surface: np.ndarray,
+    surfaces: Sequence[Surface],
+    limit: float,
+) -> np.ndarray:
+    """The middle nodes, the last of `nodes` (n, 3) mm, as `snap_to_surfaces`; a copy.
+
+    Where several surfaces meet, a middle goes to their common point only if both ends of its edge (e, 2) lie
+    on all of them. An edge that crosses a smooth joint has an end beside it. Its middle, moved to the joint
+    by 0.1 mm, bent the elements so far that they were made straight, and K came out 0.04 % too low.
+    """
+    corners = len(nodes) - len(edges)
+    out = nodes.copy()
+    for owners, at in _nodes_by_surfaces(facets[:, 3:], facet_surface).items():
+        group = [surfaces[i] for i in owners]
+        ends = nodes[edges[at - corners]].reshape(-1, 3)
+        on_all = _off(ends, group).reshape(-1, 2).max(axis=1) < SETTLED_mm
+        out[at] = _snapped(nodes[at], group, limit, on_all)
+    return out
+
+
+def _snapped(
+    points: np.ndarray, group: Sequence[Surface], limit: float, to_common: np.ndarray
+) -> np.ndarray:
+    """Points (k, 3) on the surfaces of a group: at their common point where allowed, or on the nearest."""
+    moved, settled = common_point(points, group)
+    fine = settled & (np.linalg.norm(moved - points, axis=1) <= limit)
+    if len(group) == 1:
+        return np.where(fine[:, None], moved, points)
+    fine &= to_common
+    return np.where(fine[:, None], moved, _nearest_alone(points, group, limit))
 
 
 def into_sector_planes(
@@ -93,8 +125,12 @@ def common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarr
             moved = surface.project(moved)
         if np.abs(moved - before).max() < AGREEMENT_mm:
             break
-    off = np.max([np.abs(s.project(moved) - moved).max(axis=1) for s in group], axis=0)
-    return moved, off < SETTLED_mm
+    return moved, _off(moved, group) < SETTLED_mm
+
+
+def _off(points: np.ndarray, group: Sequence[Surface]) -> np.ndarray:
+    """How far points are from the farthest surface of a group, mm."""
+    return np.max([np.abs(s.project(points) - points).max(axis=1) for s in group], axis=0)
 
 
 def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -> np.ndarray:

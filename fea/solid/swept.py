@@ -17,6 +17,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, HoledColumn, column_of
 from flexspline.fea.solid.facet_surfaces import patches_of, surfaces_of
 from flexspline.fea.solid.layered import layered_mesh
@@ -36,7 +37,6 @@ from flexspline.fea.solid.swept_sizing import (
     plan_mesh,
     refuse_beyond_memory,
 )
-from flexspline.fea.types import TetMesh
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import Surface, part_surfaces
@@ -56,7 +56,7 @@ def swept_mesh(
     spec: MeshSpec,
     finer: Finer | None = None,
     most_elements: float = inf,
-) -> TetMesh | None:
+) -> BisectableMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
     A shaft with holes that are not in a plain column, or a keyway that cannot be bent into place, is swept
@@ -83,7 +83,7 @@ def swept_mesh(
         )
         if len(tets) > most_elements:
             raise TooManyElementsError(len(tets), most_elements)
-        return _curved(part, column, block, sector_deg, polar, tets, bend)
+        return _curved(part, sector_deg, polar, tets, bend)
     except (MeshQualityError, MeshingError):
         return None
 
@@ -147,13 +147,11 @@ def _prisms(
 
 def _curved(
     part: Part,
-    column: HoledColumn | None,
-    block: SlottedTube | None,
     sector_deg: float,
     polar: np.ndarray,
     tets: np.ndarray,
     bend: PolarMap,
-) -> TetMesh:
+) -> BisectableMesh:
     """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
     corners = cartesian(bend(polar))
     faces = boundary_faces(tets)
@@ -165,23 +163,34 @@ def _curved(
     nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
     nodes[: len(corners)] = corners
     nodes = straightened(nodes, cells, edges, facets)
-    if block is not None:
-        _refuse_thick_land(nodes, facets, facet_surface, surfaces, block)
-    mesh = TetMesh(nodes, cells, facets, *patches_of(facet_surface, surfaces), sector_deg)
-    check_sizes(mesh, _sizes(part, sector_deg, column, block))
+    patches = patches_of(facet_surface, surfaces)
+    mesh = BisectableMesh(
+        nodes, cells, facets, *patches, sector_deg, facet_surface, in_layers=False
+    )
+    check_swept(mesh, part)
     return mesh
 
 
+def check_swept(mesh: BisectableMesh, part: Part) -> None:
+    """Compare volume and patch areas with Pappus' theorems, and a keyway's land.
+
+    Raises
+    ------
+    MeshQualityError : one of them is off.
+    """
+    column = column_of(part)
+    block = bent_block(part, column)
+    if block is not None:
+        _refuse_thick_land(mesh, part_surfaces(part, mesh.sector_deg), block)
+    check_sizes(mesh, _sizes(part, mesh.sector_deg, column, block))
+
+
 def _refuse_thick_land(
-    nodes: np.ndarray,
-    facets: np.ndarray,
-    facet_surface: np.ndarray,
-    surfaces: Sequence[Surface],
-    block: SlottedTube,
+    mesh: BisectableMesh, surfaces: Sequence[Surface], block: SlottedTube
 ) -> None:
     """Raise MeshQualityError where straight edges change the land between floor and bore."""
     for number, surface in enumerate(surfaces):
-        mine = nodes[np.unique(facets[facet_surface == number])]
+        mine = mesh.nodes[np.unique(mesh.facets[mesh.facet_surface == number])]
         off = np.linalg.norm(surface.project(mine) - mine, axis=1).max(initial=0.0)
         if off > STRAIGHT_OF_LAND * block.land:
             raise MeshQualityError(

@@ -146,7 +146,8 @@ def test_edges_stay_where_longer_ones_leave_as_many_elements(tmp_path: Path) -> 
 def test_a_sweep_that_fails_when_refined_is_left_altogether(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Another kind then makes every mesh: between two kinds K moves by more than its bounds."""
+    """By its errors and by a specification. Another kind then makes every mesh: between two kinds K moves by
+    more than its bounds."""
     sweep = PartMeshes.swept
     first: list[MeshSpec] = []
 
@@ -154,7 +155,11 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
         first.append(spec)
         return sweep(self, spec, *more) if spec == first[0] else None
 
+    def fails(*given: object) -> TetMesh:
+        raise MeshQualityError("it fails a check")
+
     monkeypatch.setattr(PartMeshes, "swept", lambda self, spec, **more: once(self, spec))
+    monkeypatch.setattr(solid_torsion, "finer_by_error", fails)
     if kind == "tetwild":
         monkeypatch.setattr(PartMeshes, "layered", lambda self, spec: None)
     monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
@@ -252,8 +257,8 @@ def test_a_first_mesh_in_layers_that_is_very_large_is_the_only_one(
     most: int, alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A second one would take longer to make than is left to solve it."""
-    monkeypatch.setattr(solid_torsion, "LAYERED_ELEMENTS", 100)
-    monkeypatch.setattr(solid_torsion, "LAYERED_ALONE", most)
+    monkeypatch.setattr(solid_torsion, "HALVED_ELEMENTS", 100)
+    monkeypatch.setattr(solid_torsion, "HALVED_ALONE", most)
     design = DESIGN.changed({"solver.tolerance_pct": 0.1, "solver.model": "solid"})
     part = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
     found = solid_torsion.twisted(part, part.tolerance, kinds=("layered",)).stiffness

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexspline.fea.solid.layer_curving import LayeredMesh
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.types import MeshLevel, StressPeak
 from flexspline.pipeline.packing import packed, unpacked
 
@@ -44,11 +44,11 @@ def test_a_process_that_has_not_met_the_class_reads_it(tmp_path: Path) -> None:
     """As the one that draws, which knows no layers: `run` once left two pictures out for them."""
     empty = np.zeros((0, 3))
     file = tmp_path / "mesh.npz"
-    file.write_bytes(packed(LayeredMesh(empty, empty, empty, empty, ("",), 90.0, empty)))
+    file.write_bytes(packed(BisectableMesh(empty, empty, empty, empty, ("",), 90.0, empty, True)))
     done = subprocess.run(
         [sys.executable, "-c", READS, str(file)], capture_output=True, text=True, check=True
     )
-    assert done.stdout.strip() == "LayeredMesh 90.0"
+    assert done.stdout.strip() == "BisectableMesh 90.0"
 
 
 @pytest.mark.parametrize(

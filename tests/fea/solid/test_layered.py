@@ -16,11 +16,12 @@ from scipy.spatial import cKDTree
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
+from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import jacobian_ratio
-from flexspline.fea.solid.layer_curving import LayeredMesh
+from flexspline.fea.solid.finer import finer_by_error
 from flexspline.fea.solid.layer_sizes import volume
-from flexspline.fea.solid.layered import finer_layers, layered_mesh
+from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
@@ -319,7 +320,7 @@ def test_a_mesh_is_finer_where_its_error_is_and_nowhere_else() -> None:
     step = part.hole_depth
     error = np.where(z.max(axis=1) < step + 1e-9, 1.0, 0.0)
     assert (error > 0).mean() > 0.05  # more than one round halves
-    finer = finer_layers(part, mesh, error, 2 * mesh.elements)
+    finer = finer_by_error(part, mesh, error, 2 * mesh.elements)
     # the last round's neighbours are cut too
     assert 2 * mesh.elements <= finer.elements < 2.5 * mesh.elements
     both = [m.nodes[m.cells[:, :4], 2] for m in (mesh, finer)]
@@ -348,8 +349,8 @@ def test_a_narrow_neck_is_found_by_its_error() -> None:
     degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(4.0)
 
     def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh:
-        assert isinstance(mesh, LayeredMesh)
-        return finer_layers(part, mesh, error, 2 * mesh.elements)
+        assert isinstance(mesh, BisectableMesh)
+        return finer_by_error(part, mesh, error, 2 * mesh.elements)
 
     def mesher(spec: MeshSpec) -> TetMesh:
         return layered_mesh(part, degrees, spec)
@@ -376,8 +377,8 @@ def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
         return later(layered_mesh(part, sector_of(part, "torsion").degrees, spec))
 
     def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh:
-        assert isinstance(mesh, LayeredMesh)
-        return later(finer_layers(part, mesh, error, 2 * mesh.elements))
+        assert isinstance(mesh, BisectableMesh)
+        return later(finer_by_error(part, mesh, error, 2 * mesh.elements))
 
     def later(mesh: TetMesh) -> TetMesh:
         clock[0] += 25.0
