@@ -56,14 +56,16 @@ def skin(part: WholePart, left_out: Opening | None = None) -> Skin:
         angle = (_cell_angle(part) - left_out.start_deg) % 360.0
         shown = angle >= left_out.width_deg
     cells, tags = part.cells[shown], part.face_patch[shown]
-    faces = cells[:, FACES].reshape(-1, 6)
+    # whole copies are shown: a face inside of one belongs to two shown cells
+    outer = tags >= 0 if part.sector_deg < 360 else np.ones(tags.shape, bool)
+    faces, tags = cells[:, FACES][outer], tags[outer]
     size = len(part.nodes)
     c = np.sort(faces[:, :3], axis=1).astype(np.int64)
     _, first, count = np.unique(
         (c[:, 0] * size + c[:, 1]) * size + c[:, 2], return_index=True, return_counts=True
     )
     alone = np.sort(first[count == 1])
-    return Skin(faces[alone], tags.ravel()[alone])
+    return Skin(faces[alone], tags[alone])
 
 
 def _cell_angle(part: WholePart) -> np.ndarray:
