@@ -76,7 +76,7 @@ class SolvedWave:
 class WaveSupports:
     """Prescribed components of a wave; a later value replaces an earlier one.
 
-    `antisymmetric`: the load is that of torsion under a reflection at angle 0, else that of the ellipse.
+    `antisymmetric`: under a reflection at angle 0 the load behaves as torsion, else as the ellipse.
     """
 
     def __init__(self, model: Model, wave: CyclicWave, antisymmetric: bool) -> None:

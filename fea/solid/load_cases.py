@@ -230,7 +230,7 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
 
 
 def _of_waves(model: Model, found: list[SolvedWave], parity: Parity) -> Solved:
-    """Waves of half a repeat on the quarter of the part, or on its half, where n is odd."""
+    """Waves of half a repeat, unfolded to a quarter of the part, or to a half if n is odd."""
     whole = unfolding(model.mesh, larger_deg(model.mesh))
     u = np.zeros((whole.copies, len(model.mesh.nodes), 3))
     for copy, values in enumerate(u):

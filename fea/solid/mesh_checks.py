@@ -87,7 +87,8 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
 
 
 def _in_words(patch: str) -> str:
-    """A user knows the named patches (docs/contract.md), not the planes that a sector is cut at."""
+    """The name of a patch in messages. Users know the named patches (docs/contract.md), but not the planes at
+    which a sector is cut."""
     if patch in (SYMMETRY_START, SYMMETRY_END):
         return "the plane at which the part is cut for its symmetry"
     return "the volume" if patch == VOLUME else f"patch '{patch}'"

@@ -24,7 +24,7 @@ are refused before the mesh is built."""
 
 @dataclass(frozen=True)
 class Finer:
-    """What a load that varies about the axis asks of a mesh, beyond the grading.
+    """Requirements on a mesh beyond the grading, by a load that varies about the axis.
 
     Attributes
     ----------

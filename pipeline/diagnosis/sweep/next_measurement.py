@@ -1,4 +1,4 @@
-"""The measurement that would tell rivals apart best, computed from what they predict."""
+"""The measurement that would distinguish rivals best, computed from their predictions."""
 
 from __future__ import annotations
 
@@ -174,7 +174,8 @@ def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, n
 
 
 def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasurement | None:
-    """What to measure next: to find the unknown, to part rivals, or to confirm the smallest cause."""
+    """What to measure next: to find the unknown effect, to distinguish rivals, or to confirm the smallest
+    cause."""
     if decision.verdict == "unknown" and decision.unexplained:
         worst = decision.unexplained[0]
         return NextMeasurement(worst.channel, "find_structure", structure=worst.structure)

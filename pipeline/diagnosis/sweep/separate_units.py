@@ -1,7 +1,7 @@
 """Units under test that differ: each is judged by its own rows.
 
-One gear of three may drift, or have another position error. All rows together then show the mean of an effect
-and of none, and what that misses in each unit has no name.
+One gear of three may drift, or have another position error. All rows together then show a mean of an effect
+and of none, and its misfit in each unit has no cause.
 """
 
 from __future__ import annotations

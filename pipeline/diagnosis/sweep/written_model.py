@@ -1,4 +1,4 @@
-"""The model that is written: fitted with what stands in it, and with nothing else."""
+"""The model that is written: fitted with its own terms only."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def written_model(
     """The calibrated simulation with the named causes, by the best set's shapes.
 
     Where the best set has nuisance terms or minor causes beside them, zeros, stiffness, gap and amplitudes
-    are fitted again without: fitted beside terms that are left out, they make up for what is not there.
+    are fitted again without: fitted together with terms that are left out, they would compensate for them.
     """
     identified = explained.identified
     evidence, terms = identified.search.evidence, identified.best.terms

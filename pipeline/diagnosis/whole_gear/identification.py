@@ -1,4 +1,4 @@
-"""Which input of the whole gear's model explains what a sweep leaves of its curve.
+"""Which input of the whole gear's model explains the difference between a sweep and the gear's curve.
 
 Each input alone is moved from its nominal value until the curve fits the middle of the measured loop best,
 by chi square. One that fits is named, with those that fit as well as its rivals, and a torque that would tell

@@ -1,4 +1,4 @@
-"""Sets of terms that fit a misfit or the noise: no best set is one of them."""
+"""Excludes sets of terms that only fit a misfit or the noise."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _undone(fit: SweepFit, owners: Collection[str]) -> bool:
 
 
 def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
-    """Whether one cause's elements are large effects that together are small: that makes any curve."""
+    """Whether one cause's elements are large effects that nearly cancel: such sums can form any curve."""
     fit = fit_regressors(evidence, c.terms)
     parts = np.array([
         evidence.columns.all[evidence.kept][:, evidence.terms[i].at] @ amplitudes

@@ -41,7 +41,7 @@ FOLLOWS_NATS = 3.0
 1.4, true ones 11 and more."""
 
 LOOPS = {FRICTION: RATE, RATE: FRICTION}
-"""Causes that open a loop, each with the other that does."""
+"""Causes that open a loop, each with the other one."""
 UNNAMED_LOOPS = ("?direction", "?torque_rate", "?torque_amplitude")
 """Owners of terms that open or bend a loop and have no name."""
 

@@ -1,4 +1,4 @@
-"""Several units in one file: what is common to them, and what is one unit's own."""
+"""Several units in one file: which effects are common to them, and which belong to one unit."""
 
 from __future__ import annotations
 

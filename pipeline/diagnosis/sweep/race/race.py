@@ -1,4 +1,4 @@
-"""The race on a prepared sweep: which set of regressors explains it best, and what that set identifies.
+"""The race on a prepared sweep: which set of regressors explains it best, and which causes it identifies.
 
 The first round takes the noise of a local polynomial, each further one that of what the best set leaves,
 until the two agree: a polynomial passes effects for noise and slow noise for an effect. A noise that grew and

@@ -1,4 +1,4 @@
-"""What the best model leaves, tested in every channel."""
+"""Tests of the best model's residual in every channel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the rounding of both readings leaves in the angle: a saw-tooth, the same at every pass."""
+"""Error in the angle by the rounding of both readings: a saw-tooth, the same at every pass."""
 
 from __future__ import annotations
 

@@ -28,7 +28,8 @@ other, so that the other alone must hold them off. With 1e-2 a clean record of 4
 CORRELATION_FACTOR = 1.5
 """Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
 LEAST_LOG_VARIANCE = 1e-12
-"""Of the logarithm of a ratio of squared steps: steps that are all alike scatter by rounding alone."""
+"""Least variance of the logarithm of a ratio of squared steps. If all steps are equal, only rounding
+scatters."""
 
 
 def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:

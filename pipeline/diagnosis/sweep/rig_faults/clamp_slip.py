@@ -1,7 +1,7 @@
 """Whether something gives way under torque: a lock, a clamp or a friction joint that slips.
 
-What springs comes back: when torque has risen beyond a share of its largest value and falls below it again,
-the angle is where it was, but for the width of a friction loop. What slips stays.
+Elastic twist comes back: when torque has risen beyond a share of its largest value and falls below it again,
+the angle is where it was, but for the width of a friction loop. A slip stays.
 """
 
 from __future__ import annotations
