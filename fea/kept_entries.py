@@ -1,4 +1,4 @@
-"""Some entries of sparse matrices that have their entries at the same places: those places are found once."""
+"""Entries of sparse matrices with the same pattern: where they stand is found once."""
 
 from __future__ import annotations
 
@@ -10,17 +10,34 @@ from scipy.sparse import csr_matrix
 
 
 @dataclass(frozen=True)
+class EntryPlaces:
+    """Where a CSR matrix has its entries: where each row starts, and their columns."""
+
+    starts: np.ndarray
+    columns: np.ndarray
+
+    @classmethod
+    def of(cls, matrix: csr_matrix) -> EntryPlaces:
+        return cls(matrix.indptr, matrix.indices)
+
+    def are_of(self, matrix: csr_matrix) -> bool:
+        """Whether a matrix has its entries at the same places."""
+        return np.array_equal(matrix.indptr, self.starts) and np.array_equal(
+            matrix.indices, self.columns
+        )
+
+
+@dataclass(frozen=True)
 class KeptEntries:
-    """Which entries of a CSR matrix are kept, and where its entries stand.
+    """Which entries of a CSR matrix are kept.
 
     Attributes
     ----------
-    all_starts, all_columns : of the matrix. kept : a mask of its entries.
+    places : of all its entries. kept : a mask of them.
     counts : (N,) of kept entries by row. columns : of these entries.
     """
 
-    all_starts: np.ndarray
-    all_columns: np.ndarray
+    places: EntryPlaces
     kept: np.ndarray
     counts: np.ndarray
     columns: np.ndarray
@@ -34,13 +51,7 @@ class KeptEntries:
         rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
         kept = keep(rows, matrix.indices)
         counts = np.bincount(rows[kept], minlength=n)
-        return cls(matrix.indptr, matrix.indices, kept, counts, matrix.indices[kept])
-
-    def are_of(self, matrix: csr_matrix) -> bool:
-        """Whether a matrix has its entries at the same places."""
-        return np.array_equal(matrix.indptr, self.all_starts) and np.array_equal(
-            matrix.indices, self.all_columns
-        )
+        return cls(EntryPlaces.of(matrix), kept, counts, matrix.indices[kept])
 
 
 def starts_of(counts: np.ndarray) -> np.ndarray:

@@ -67,7 +67,7 @@ class PardisoFactors:
         SolveError : as when made; nothing can be solved any more.
         """
         matrix = _rising(matrix)
-        if not self._upper.are_of(matrix):
+        if not self._upper.places.are_of(matrix):
             return False
         self._data = self._entries(matrix)
         self._do(FACTORISE)

@@ -71,19 +71,12 @@ def body_model(model: PartModel, body: Part, tolerance_pct: float) -> PartModel:
     return replace(model, context=context, part=body)
 
 
-def enclosure_if_any(
-    model: PartModel, bodies: Callable[[PartModel], TwoBodies]
-) -> Stiffness | None:
-    """`enclosure_of` where there is one and it can be solved: the solid model answers without it too.
-
-    Raises
-    ------
-    NestingError
-    """
+def bodies_if_any(model: PartModel, bodies: Callable[[PartModel], TwoBodies]) -> TwoBodies | None:
+    """Both where there are such and they can be solved: the solid model answers without them too."""
     if not has_enclosure(model):
         return None
     try:
-        return enclosure_of(model, bodies(model))
+        return bodies(model)
     except (ComputationError, MemoryError) as fault:
         model.context.progress.note(f"  no bounds from two bodies of revolution: {fault}")
         return None

@@ -17,9 +17,9 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline.by_harmonics import by_harmonics, rim_by_harmonics
 from flexspline.pipeline.enclosed_part import (
     FAR_BOUNDS_PCT,
+    bodies_if_any,
     body_model,
     bounds_pct,
-    enclosure_if_any,
     enclosure_of,
     has_enclosure,
     may_answer,
@@ -37,10 +37,6 @@ from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
-
-FAR_HALF_WIDTHS = 3.0
-"""Half-width of the enclosure of K held over the tolerance, beyond which K with lift-off is solved coarsely:
-most of it is what the holes take off."""
 
 
 @dataclass(frozen=True)
@@ -80,37 +76,33 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
         if asked.solid is None:
             return asked.with_holes(flexspline)
         if may_answer(flexspline):
-            return _of_holed(flexspline, asked.bodies, asked.with_holes)
+            bodies = bodies_if_any(flexspline, asked.bodies)
+            if bodies is None:
+                return asked.with_holes(flexspline)
+            return _of_holed(flexspline, bodies, asked.with_holes)
     if asked.solid is None:
         raise ComputationError(
             f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
     solid = asked.solid(flexspline)
-    if enclosure := enclosure_if_any(flexspline, asked.bodies):
-        check_against(solid, enclosure)
+    if bodies := bodies_if_any(flexspline, asked.bodies):
+        check_against(solid, enclosure_of(flexspline, bodies))
     return solid
 
 
 def _of_holed(
-    flexspline: PartModel,
-    bodies: Callable[[PartModel], TwoBodies],
-    with_holes: Callable[[PartModel], Stiffness],
+    flexspline: PartModel, bodies: TwoBodies, with_holes: Callable[[PartModel], Stiffness]
 ) -> Stiffness:
     """The enclosure; where it is too wide K by torsion within it; at last what the holes change, solved."""
-    found = enclosure_if_any(flexspline, bodies)
-    if found is None:
-        return with_holes(flexspline)
-    tolerance = flexspline.tolerance
+    found, tolerance = enclosure_of(flexspline, bodies), flexspline.tolerance
     if found.half_width > tolerance:
         try:
             K_b = part_stiffness(flexspline)
         except (ComputationError, MemoryError) as fault:
             flexspline.context.progress.note(f"  no K_b in torsion to begin with: {fault}")
         else:
-            found = answered_within(
-                found, lambda: _by_torsion(flexspline, K_b, bodies(flexspline)), tolerance
-            )
+            found = answered_within(found, lambda: _by_torsion(flexspline, K_b, bodies), tolerance)
     if found.half_width <= tolerance:
         return found
     return answered_within(found, lambda: with_holes(flexspline), tolerance)
@@ -169,9 +161,9 @@ def _resting_on(flexspline: PartModel, held: Stiffness, tolerance: float) -> Sti
     )
 
 
-def _resting_bodies(flexspline: PartModel) -> TwoBodies:
+def _resting_bodies(flexspline: PartModel, held: TwoBodies) -> TwoBodies:
     """Their ratios to K held are as fine as that of the part asks."""
-    held, bodies = CASES["lobes"].bodies(flexspline), nested_bodies(flexspline.part)
+    bodies = nested_bodies(flexspline.part)
     doubt = _wanted_doubt(held.enclosure().half_width, flexspline)
 
     def solve(body: Part, own: Stiffness) -> Stiffness:
@@ -182,22 +174,20 @@ def _resting_bodies(flexspline: PartModel) -> TwoBodies:
 
 
 def _wanted_doubt(held: float, flexspline: PartModel) -> float:
-    """Of each body's ratio, relative, by the half-width of the enclosure of K held, which it adds to.
+    """How well each body's ratio must be known, relative. `held`: half-width of the enclosure of K held.
 
-    Half of what is left of the tolerance. Where nothing is left, the part's ratio is between the bodies', and
-    is to be known as well as a body's K; where little of the enclosure is the bodies' bounds, less well.
+    The ratio's doubt adds to that half-width, so it may take half of what is left of the tolerance. If
+    nothing is left, the part's ratio lies between the bodies' ratios, which must be known as well as their K.
     """
-    least = bounds_pct(flexspline) / 100 / 2
-    if held > FAR_HALF_WIDTHS * flexspline.tolerance:
-        return max(least, FAR_BOUNDS_PCT / 100 / 2)
-    return max(least, (flexspline.tolerance - held) / 2)
+    return max(bounds_pct(flexspline) / 100 / 2, (flexspline.tolerance - held) / 2)
 
 
 def _resting_with_holes(flexspline: PartModel) -> Stiffness:
+    held = CASES["lobes"].bodies(flexspline)
     return resting_with_holes(
         flexspline,
-        _resting_bodies(flexspline),
-        CASES["lobes"].bodies(flexspline),
+        _resting_bodies(flexspline, held),
+        held,
         lambda: rim_stiffness(flexspline, "lobes"),
     )
 
@@ -215,6 +205,11 @@ CASES: Mapping[RimCase, RimModels] = {
         for name, case in RIM_CASES.items()
         if case.solve is not None
     },
-    "lobes_contact": RimModels(_resting, _resting_bodies, contact, with_holes=_resting_with_holes),
+    "lobes_contact": RimModels(
+        _resting,
+        lambda flexspline: _resting_bodies(flexspline, CASES["lobes"].bodies(flexspline)),
+        contact,
+        with_holes=_resting_with_holes,
+    ),
 }
 SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)

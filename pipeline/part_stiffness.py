@@ -13,7 +13,7 @@ from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.drawn_teeth import of_toothed
-from flexspline.pipeline.enclosed_part import bodies_of, enclosure_if_any, may_answer
+from flexspline.pipeline.enclosed_part import bodies_if_any, bodies_of, enclosure_of, may_answer
 from flexspline.pipeline.enclosure import answered_within, check_against, overlap, proven_by
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
@@ -70,8 +70,9 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
 
 
 def torsion_enclosure(model: PartModel) -> Stiffness | None:
-    """`enclosure_if_any` of the turned part; its bodies take 0.1 s each, as fine as is asked."""
-    return enclosure_if_any(model, partial(bodies_of, solve=revolved_stiffness))
+    """Of the turned part, if any; its bodies take 0.1 s each, as fine as is asked; raises NestingError."""
+    bodies = bodies_if_any(model, partial(bodies_of, solve=revolved_stiffness))
+    return None if bodies is None else enclosure_of(model, bodies)
 
 
 def _solid_stiffness(model: PartModel) -> Stiffness:

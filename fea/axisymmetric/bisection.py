@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths, edge_middles
+from flexspline.fea.edges import SIDES, edge_numbers
 
 
 def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
@@ -16,6 +17,13 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
     New nodes of fillets are put on the exact arc.
     """
     return refined_with_parents(mesh, marked)[0]
+
+
+def refined_while(mesh: MeridianMesh, marked: Callable[[MeridianMesh], np.ndarray]) -> MeridianMesh:
+    """The mesh refined until `marked`, a mask (m,) of its triangles, is empty."""
+    while (now := marked(mesh)).any():
+        mesh = refined(mesh, now)
+    return mesh
 
 
 @dataclass(frozen=True)
@@ -36,12 +44,14 @@ class Box:
 
 def refined_within(mesh: MeridianMesh, boxes: Sequence[Box], share: float = 1.0) -> MeridianMesh:
     """The mesh refined until no triangle that meets a box has an edge longer than `share` of its longest."""
-    while True:
-        length = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
-        long = [(length > share * box.longest_mm) & box.meets(mesh) for box in boxes]
-        if not (marked := np.logical_or.reduce(long)).any():
-            return mesh
-        mesh = refined(mesh, marked)
+
+    def too_long(mesh: MeridianMesh) -> np.ndarray:
+        longest = mesh.longest_edges()
+        return np.logical_or.reduce(
+            [(longest > share * box.longest_mm) & box.meets(mesh) for box in boxes]
+        )
+
+    return refined_while(mesh, too_long)
 
 
 def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:
@@ -53,9 +63,8 @@ def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> Me
 def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
     """As `refined`, and of which triangle of `mesh` each of its triangles is a piece."""
     tri = _longest_first(mesh.points, mesh.triangles)
-    pairs = np.sort(tri[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     n = len(mesh.points)
-    keys, of = np.unique(pairs[:, 0] * n + pairs[:, 1], return_inverse=True)
+    keys, of = np.unique(edge_numbers(tri[:, SIDES], n), return_inverse=True)
     of = of.reshape(-1, 3)
     cut = np.zeros(len(keys), bool)
     cut[of[marked]] = True
@@ -68,8 +77,7 @@ def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[Meridi
     new[cut] = n + np.arange(cut.sum())
     ends = np.column_stack([keys // n, keys % n])
     middle = mesh.points[ends].mean(axis=1)
-    low, high = np.sort(mesh.edges, axis=1).T
-    rim = np.searchsorted(keys, low * n + high)
+    rim = np.searchsorted(keys, edge_numbers(mesh.edges, n))
     middle[rim] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
     edges, segment = _halved(mesh, new[rim])
     children, parent = _children(tri, new[of])

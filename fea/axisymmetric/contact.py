@@ -27,10 +27,11 @@ from flexspline.geometry.outline import Meridian
 ANGLES = 32
 """Contact points per half turn. 64 change K by 0.01 %, 48 by 0.006 % (xb1-40)."""
 MOST_SEAT_PLACES = 33
-"""Along the seat, closer towards its ends. Twice as many change the ratio by 3e-5 at most (seats of up to 513
-nodes), all nodes by 1e-5 (up to 129)."""
+"""Most places along the seat; they are closer to each other towards its ends. Twice as many change the ratio
+by 3e-5 at most (seats of up to 513 nodes), all nodes change it by 1e-5 (up to 129 nodes)."""
 MOST_MESHES, MOST_CONTACT_TRIANGLES = 4, 2400
-"""Each has four times the triangles of the last; 2400 take 1.7 s, 7000 take 7 to 8 s."""
+"""Most meshes and most triangles. Each mesh has four times the triangles of the one before; 2400 take 1.7 s,
+7000 take 7 to 8 s."""
 CHANGE_RATIOS = (0.25, 0.7)
 """Of the ratio's changes from mesh to mesh, the range believed: edges that halve leave a half at singular
 ends of the seat, 1/4 of a smooth field. 0.26 to 0.65 on five random flexsplines and up to five meshes."""
@@ -84,7 +85,7 @@ def contact_stiffness(
 class _Ratios:
     """K that rests over K that is held, of two meshes and more; `lowest`: a free seat's ratio on the last.
 
-    `wanted` is the relative doubt that may be left; 0 and less is out of reach, two meshes do.
+    `wanted` is the relative doubt that may be left. 0 or less cannot be reached; two meshes are then enough.
     """
 
     def __init__(self, material: Elastic, wanted: float) -> None:
@@ -117,7 +118,8 @@ class _Ratios:
 def settling(ratios: Sequence[float]) -> tuple[float, float]:
     """The ratio that meshes with ever halved edges tend to, and how far it may be off.
 
-    Two meshes tell their difference only. Of three, the last two changes tell the rate of a geometric series.
+    Two meshes give only their difference. From three, the last two changes give the ratio of a geometric
+    series.
     """
     last = ratios[-1] - ratios[-2]
     if len(ratios) == 2:

@@ -9,20 +9,21 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
-from flexspline.fea.kept_entries import KeptEntries, starts_of
+from flexspline.fea.kept_entries import EntryPlaces, KeptEntries, starts_of
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 PARDISO_AT_ONCE_FROM = 8_000
-"""Unknowns from which oneMKL's Pardiso takes less time than SuperLU even for one matrix alone, where it is:
-147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of that, on a busy
-machine. Below, Pardiso begins with the second matrix of the same places: of 1 200, 1 600, 4 400 and 5 800
-unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0, 2.7, 11.3 and 15.1, and 0.5,
-0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress and about five for lobes."""
+"""Unknowns from which oneMKL's Pardiso, if it is installed, is faster than SuperLU even for a single
+matrix: 147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of
+that, on a busy machine. Below, Pardiso is used from the second matrix with the same places on: of 1 200,
+1 600, 4 400 and 5 800 unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0,
+2.7, 11.3 and 15.1, and 0.5, 0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress
+and about five for lobes."""
 LARGEST_RESIDUAL = 1e-3
-"""‖Ku − f‖/‖f‖ of SuperLU's solution. Of 252 meridians of cups it was 6e-12 at most, of a thin ring, whose
-condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.015 to 5."""
+"""Largest ‖Ku − f‖/‖f‖ of SuperLU's solution. It was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
+thin ring with a condition number of 1e10, and 0.015 to 5 for grids of springs that were held nowhere."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class _FreeEntries:
 
     def are_of(self, matrix: csr_matrix, free: np.ndarray) -> bool:
         """Whether a matrix with these free unknowns has them at the same places."""
-        return np.array_equal(free, self.free) and self.entries.are_of(matrix)
+        return np.array_equal(free, self.free) and self.entries.places.are_of(matrix)
 
     def between(self, matrix: csr_matrix) -> csr_matrix:
         """The matrix of the free unknowns."""
@@ -59,13 +60,14 @@ class _FreeEntries:
 
 
 class PatternSolver:
-    """Of symmetric positive definite systems; an ordering that Pardiso made stays while the places do."""
+    """Solves symmetric positive definite systems. Pardiso's ordering is kept as long as the entries' places
+    stay."""
 
     def __init__(self) -> None:
         self._entries: _FreeEntries | None = None
         self._lock = Lock()  # factors serve one thread at a time
         self._factors: PardisoFactors | None = None
-        self._places: tuple[np.ndarray, np.ndarray] | None = None
+        self._places: EntryPlaces | None = None
 
     def free_part(self, matrix: csr_matrix, free: np.ndarray) -> csr_matrix:
         """K between the free unknowns, a mask (N,) of those of `matrix`."""
@@ -87,8 +89,8 @@ class PatternSolver:
         with self._lock:
             last, self._factors = self._factors, None
             if last is None or not last.replace(matrix):
-                before, self._places = self._places, (matrix.indptr, matrix.indices)
-                again = before is not None and all(map(np.array_equal, before, self._places))
+                before, self._places = self._places, EntryPlaces.of(matrix)
+                again = before is not None and before.are_of(matrix)
                 if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
                     return _checked(matrix, loads)
                 last = PardisoFactors(matrix, single=False)

@@ -32,18 +32,19 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME_mm
 
 DEGREE = 6
-"""Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""
+"""Degree of the quadrature. r|∇N|² has degree 3 on straight triangles; the rest is for N²/r and curved
+edges."""
 CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
 """Nodes of the reference triangle in P2 order (2, 6)."""
 INWARD = 1e-6
-"""Fields at nodes are seen this far inside, where u/r is defined even on the axis."""
+"""Fields at nodes are evaluated this far inside the triangle, where u/r is defined even on the axis."""
 PRESSURE = LinearForm(lambda v, w: v * w.x[0])
 PRESSURE_DEGREE = 3
-"""Of shape function times radius on a straight edge."""
+"""Degree of shape function times radius on a straight edge."""
 LOST_ENERGY_LIMIT = 1e-5
-"""Largest |u·(Ku - f)| over u·Ku, of solid models too. A floppy body's ‖Ku - f‖/‖f‖ is large by rounding
+"""Largest |u·(Ku - f)| over u·Ku, also of solid models. ‖Ku - f‖/‖f‖ of a flexible body is large by rounding
 alone (1e-7 for an unsupported thin cup, 2e-8 for a roof of one layer of tetrahedra), so the residual is
-judged by the energy it carries: of that cup 1e-11, of one with a wall of 1/770 of its diameter 1.1e-6."""
+judged by its energy: 1e-11 for that cup, 1.1e-6 for one with a wall of 1/770 of its diameter."""
 
 
 @dataclass(frozen=True)
@@ -131,12 +132,12 @@ class HarmonicModel:
 
     @cached_property
     def couplings(self) -> Couplings:
-        """What all harmonics of this mesh are made of."""
+        """The forms from which all harmonics of this mesh are combined."""
         return Couplings(self.space, self.material)
 
     @cached_property
     def solver(self) -> PatternSolver:
-        """Of all harmonics: their matrices have their entries at the same places."""
+        """The solver of all harmonics, whose matrices have their entries at the same places."""
         return PatternSolver()
 
     def stiffness(self, wave: Harmonic) -> csr_matrix:

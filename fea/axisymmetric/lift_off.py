@@ -14,10 +14,10 @@ from flexspline.fea.axisymmetric.harmonics import HarmonicError
 from flexspline.fea.interior_point import corrected, room
 
 SEAT_RESIDUAL = 1e-10
-"""Forces times gaps, and what the gaps are off by, end below this share of the largest. Judgement: far below
-what the angles on the seat leave open."""
+"""The rounds end when forces times gaps, and the residual of the gaps, are below this share of the largest.
+Judgement: far below the error by the number of angles on the seat."""
 MOST_ROUNDS = 100
-"""Rims of 150 random designs took up to 18 rounds, 2000 random problems up to 20."""
+"""Most rounds. Rims of 150 random designs took up to 18, 2000 random problems up to 20."""
 SEAT_STEP_SHARE = 0.995
 """Share of the way to the nearest bound that a step may go: near 1, as usual in primal-dual interior-point
 methods (S. J. Wright, Primal-Dual Interior-Point Methods, SIAM 1997)."""

@@ -36,21 +36,20 @@ from flexspline.geometry.percent import percent
 LOBE_HALF_WIDTH = pi / 6
 """φ0: torque enters over ±30° about each end of the major axis (docs/contract.md)."""
 TAIL_SHARE = 0.1
-"""Harmonics are added until the rest is below this share of the bounds' wanted width."""
+"""Harmonics are added until the rest is below this share of the wanted width of the bounds. Judgement."""
 MOST_HARMONICS = 200
-"""Even ones. The end of a loop: the load falls as 1/n³, and cups and hats need about 20."""
+"""Most even harmonics; it only ends the loop. The load falls as 1/n³, and cups and hats need about 20."""
 LOBE_BULK = 0.6
 """Share of the estimated error in the triangles that are refined (Dörfler, SINUM 33 (1996) 1106-1124)."""
 LOBE_TWICE_SHARE = 0.45
-"""Share of it whose triangles are refined twice a round: two meshes do where it took three, in 0.85 of the
-time (12 cups in bounds 1 % apart, their K within 0.23 % of before)."""
+"""Share of that error in the triangles that are refined twice a round. Two meshes then suffice instead of
+three, in 0.85 of the time (12 cups, bounds 1 % apart, K within 0.23 % of before)."""
 MOST_TRIANGLES_WITHIN = 6_000
-"""Of a third mesh, or a later one, that is fine in a box: some twenty harmonics take 1.5 s."""
+"""Most triangles of a third or later mesh that is fine in a box: some twenty harmonics take 1.5 s."""
 ERROR_SCALES = (2.7, 4.0)
-"""Range of true over estimated error that two meshes may claim, the upper end where there is one mesh; the
-bounds hold to twice that. Of 85 random
-cups and hats with two meshes it was 2.2 to 2.7 for half of them, 3.7 at most; one of another hundred had 5.0,
-where the meshes claimed 2.3."""
+"""Range of true over estimated error that is accepted from two meshes. With one mesh it is the upper end. The
+bounds hold up to twice that. Of 85 random cups and hats with two meshes it was 2.2 to 2.7 for half of them,
+3.7 at most; one of another hundred had 5.0, where the meshes claimed 2.3."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 MOST_TRIANGLES = 400_000
-"""A mesh with more of them is the last one: 0.8 million nodes."""
+"""A mesh with more triangles is the last one: 0.8 million nodes."""
 
 
 def bulk(share: np.ndarray, fraction: float) -> np.ndarray:

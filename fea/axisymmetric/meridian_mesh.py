@@ -90,6 +90,10 @@ class MeridianMesh:
         """How many triangles."""
         return len(self.triangles)
 
+    def longest_edges(self) -> np.ndarray:
+        """(m,) of each triangle [mm]."""
+        return np.asarray(edge_lengths(self.points, self.triangles).max(axis=1))
+
     @property
     def shortest_edge_mm(self) -> float:
         """Of all triangles."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import mises_parts
 from flexspline.fea.quadratic_triangle import lattice_values
 from flexspline.fea.stress_rule import Largest
@@ -18,8 +18,8 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 LATTICE_STEPS = 8
-"""Stress is looked at on a lattice of so many steps along each side of a triangle: the top of a parabola is
-missed by 1/64 of its height over the side at most."""
+"""Steps along each side of a triangle of the lattice on which stress is evaluated. The top of a parabola is
+missed by at most 1/64 of its height over the side."""
 
 
 BULGE = 1.25
@@ -126,7 +126,7 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     along; so those near by may be no larger than half of it.
     """
     corner = mesh.points[mesh.triangles]
-    longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+    longest = mesh.longest_edges()
     # nodes at the border average over triangles that begin up to half a distance beyond it
     coarse = longest > exclusion_mm / 2
     near = _distance(corner[coarse], mesh.outline).min(axis=1) < 1.5 * exclusion_mm

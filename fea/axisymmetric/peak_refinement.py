@@ -27,7 +27,7 @@ PEAK_BULK = 0.5
 """Share of the estimated energy error in the triangles refined, beside those of LOCAL_ERROR_SHARE. Judgement:
 less than `lobes.LOBE_BULK`, as the others come on top."""
 LOCAL_ERROR_SHARE = 0.5
-"""Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
+"""Triangles whose stress is off by more than this share of the tolerance are refined too. Judgement."""
 BORDER_SHARE = 0.25
 """Borders of the excluded neighbourhoods are meshed finely from this share of the peak on, or of the largest
 stress at twice the distance, which is told too. A coarse mesh may see too little there: stress grows at most
@@ -35,8 +35,8 @@ as distance^-1/2 towards a singular point, to four times within 16 exclusion dis
 triangle exceeds by much. Of 60 random cups and hats, peaks came within 0.6 % of those to 0.1 %; with all
 borders fine within 0.75 %, in 1.4 times the time."""
 QUIET_ROUNDS = 2
-"""So many refinements in a row must leave the peak unchanged within the tolerance: one may
-have refined elsewhere only."""
+"""Successive refinements that must leave the peak unchanged within the tolerance. A single one may have
+refined other places only."""
 ENERGY_SHARE = 0.5
 """The estimated energy error must be below this share of the tolerance: a thick hat's peak was 1.4 % too high
 after two quiet rounds with 0.9 % of the energy in doubt."""
@@ -81,7 +81,7 @@ class StressProblem:
         return found.field(shortfall)
 
     def fields(self) -> Iterator[RevolvedField]:
-        """What each mesh gives whose peak counts; the last is `field`. Errors as there."""
+        """The results of each mesh whose peak counts; the last one is `field`. Errors as there."""
         found = _MeshedField(self)
         mesh = triangulate(self.outline)
         for shortfall in refinements(found, mesh, self.deadline, MOST_TRIANGLES):
@@ -90,7 +90,7 @@ class StressProblem:
 
 
 class _MeshedField:
-    """What the finest mesh gave, and the figures of all; a field is made only where it is asked for.
+    """Results of the finest mesh and the figures of all meshes. A field is made only on request.
 
     Attributes
     ----------
@@ -141,7 +141,7 @@ class _MeshedField:
         found, peak = self._found, self._peak
         allowed = LOCAL_ERROR_SHARE * self._problem.tolerance * peak.mises_MPa
         wrong = peak.counted & (found.misfit > allowed)
-        # no smaller than needed where the peak is not: those far below it may be a few percent off
+        # far below the peak, stresses may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
         marked = bulk(found.error, PEAK_BULK) | (wrong & near) | self._coarse
         mesh, parent = refined_with_parents(mesh, marked)

@@ -14,7 +14,8 @@ from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.own_assembly import triangles_of
 
 OUTSIDE = 0.01
-"""A mesher's walls may begin 1e-6 mm outside, a parabola's points 1e-4 of its radius."""
+"""Share of the mesh's size that a point may lie outside. A mesher's walls may begin 1e-6 mm outside, points
+of a parabola 1e-4 of its radius."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Steps of Delaunay refinement (Ruppert, J. Algorithms 18, 1995, 548-585), shared by meridian and plan.
 
-Points are (n, 2), triangles (m, 3) counter-clockwise, edges (k, 2) of point numbers: of those lines
-that the mesh must keep.
+Points are (n, 2), triangles (m, 3) counter-clockwise, edges (k, 2) the point numbers of the lines that the
+mesh must keep.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from flexspline.fea.axisymmetric.meridian_mesh import edge_lengths, signed_areas
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 FLAT_SHARE = 1e-9
-"""A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
-the hull, between points of one straight segment, turned either way."""
+"""A triangle with less area than this share of its longest side squared is a line. Rounding leaves such
+triangles on the hull, between points of one straight segment, turned either way."""
 TOUCH = 1e-7
 """Relative slack of circle tests: cocircular points of right angles and rectangles count as outside."""
 
@@ -53,6 +53,21 @@ def circumcentres(corner: np.ndarray) -> np.ndarray:
 def is_poor(sides: np.ndarray, radii: np.ndarray, smallest_angle: float) -> np.ndarray:
     """Mask (m,) of triangles with a smaller angle [rad]: the shortest side is 2R sin of the least one."""
     return np.asarray(radii > sides.min(axis=1) / (2 * np.sin(smallest_angle)))
+
+
+def improvements(
+    points: np.ndarray, edges: np.ndarray, poor: np.ndarray, radii: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Circumcentres (j, 2) worth adding of poor triangles (m, 3), and the mask of edges to halve instead."""
+    if not len(poor):
+        return np.empty((0, 2)), np.zeros(len(edges), bool)
+    order = np.argsort(-radii)
+    centre, reach = circumcentres(points[poor])[order], radii[order]
+    within, halve = entering(points, edges, centre)
+    # while no point is inside an edge's circle, no centre lies beyond the edges, but for rounding
+    low, high = points.min(axis=0), points.max(axis=0)
+    free = ((centre > low) & (centre < high)).all(axis=1) & ~within
+    return independent(centre[free], reach[free]), halve
 
 
 def entering(

@@ -94,8 +94,8 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
 def _spread(model: HarmonicModel, seat: np.ndarray, most: int) -> np.ndarray:
     """Nodal forces (s, m) of a unit force at each place, whose displacement is their mean in turn.
 
-    Places stand closer towards the seat's edges, on which the rim rests more than between them; the
-    pressure falls in a straight line from one to the next.
+    Places are closer to each other towards the seat's edges, where the rim presses more. Between two places
+    the pressure is linear.
     """
     if len(seat) <= most:
         return np.eye(len(seat))

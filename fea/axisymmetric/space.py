@@ -14,6 +14,7 @@ import numpy as np
 from skfem import ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
+from flexspline.fea.edges import edge_numbers
 from flexspline.fea.own_assembly import CurvedTriangles, ScalarBasis, Triangles
 from flexspline.fea.quadratic_triangle import shape_functions
 
@@ -121,10 +122,8 @@ def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
 
 def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
     """scikit-fem's number (k,) of each boundary edge of the meridian."""
-    n = len(meridian.points)
-    low, high = np.sort(meridian.edges, axis=1).T
-    first, second = mesh.facets.astype(np.int64)
-    return np.searchsorted(first * n + second, low * n + high)
+    theirs, ours = (edge_numbers(e, len(meridian.points)) for e in (mesh.facets.T, meridian.edges))
+    return np.searchsorted(theirs, ours)
 
 
 def _named(

@@ -12,7 +12,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian, SAME_mm
 
 LAYER_POINTS = 16
-"""On each edge: a layer may end within it."""
+"""Points on each edge, within which a layer may end. Judgement."""
 
 
 class HeldSurfaceError(ComputationError):
@@ -24,7 +24,7 @@ class HeldSurfaceError(ComputationError):
 
 
 def layer_stiffness(found: Twist, outline: Meridian) -> float:
-    """What the thin layers between the solved and another outline add to K [N·m/rad], to first order.
+    """Stiffness that the thin layers between the solved and another outline add [N·m/rad], to first order.
 
     On a free surface only the strain along it is left, γ = r ∂ψ/∂s; dA = 2πr ds.
 

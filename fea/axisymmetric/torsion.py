@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import Box, refined, refined_twice
+from flexspline.fea.axisymmetric.bisection import Box, refined_twice, refined_while
 from flexspline.fea.axisymmetric.finer_in_boxes import finer_in_boxes
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
@@ -22,11 +22,11 @@ from flexspline.geometry.outline import Meridian
 TORSION_BULK = 0.75
 """Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""
 TORSION_TWICE_SHARE = 0.5
-"""Share of the gap whose triangles are refined twice a round: they lie where the stress is singular, and K to
-0.2 % takes two thirds of the time."""
+"""Share of the gap in the triangles that are refined twice a round. They lie where the stress is singular; K
+to 0.2 % then takes two thirds of the time."""
 
 MOST_TRIANGLES_WITHIN = 12_000
-"""Of a third mesh, or a later one, that is fine in a box: 0.5 s."""
+"""Most triangles of a third or later mesh that is fine in a box: 0.5 s."""
 
 
 def torsional_stiffness(
@@ -89,14 +89,11 @@ def solved_torsions(
 
 
 def _first_mesh(outline: Meridian, boundary: Boundary) -> MeridianMesh:
-    mesh = triangulate(outline)
-    while (near := across_from_axis(mesh, boundary)).any():
-        mesh = refined(mesh, near)
-    return mesh
+    return refined_while(triangulate(outline), lambda mesh: across_from_axis(mesh, boundary))
 
 
 class _Bounds:
-    """Of K/G [mm³], by the meshes so far, and those meshes' own figures."""
+    """Bounds of K/G [mm³] by the meshes so far, and the figures of each mesh."""
 
     def __init__(self, boundary: Boundary, relative_width: float, material: Elastic) -> None:
         self._boundary, self._relative_width = boundary, relative_width

@@ -23,11 +23,9 @@ from flexspline.fea.axisymmetric.meridian_mesh import (
     signed_areas,
 )
 from flexspline.fea.axisymmetric.ruppert import (
-    circumcentres,
     circumradii,
     encroached,
-    entering,
-    independent,
+    improvements,
     is_flat,
     is_poor,
     lengths,
@@ -37,11 +35,13 @@ from flexspline.geometry.outline import Meridian, SAME_mm, Segment
 CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""
 SMALLEST_ANGLE = pi / 180 * 24
-"""Ruppert's proof covers 20.7°; in practice up to 30° ends, and P2 gains little beyond 24°."""
+"""Ruppert's proof covers 20.7°. In practice refinement ends up to 30°, and P2 gains little beyond 24°."""
 OUTLINE_ROUNDS = 300
-"""158 outlines of random designs took 11 to 25; what has no end is stopped by OUTLINE_POINTS as a rule."""
+"""Most rounds. 158 outlines of random designs took 11 to 25. Endless refinement is mostly stopped by
+OUTLINE_POINTS."""
 OUTLINE_POINTS = 20_000
-"""An outline without crossings needs a few hundred; one that crosses itself has no end."""
+"""Most points. An outline without crossings needs a few hundred; one that crosses itself is refined without
+end."""
 
 
 @lru_cache(maxsize=8)  # both parts, the seat of half the width, and a few before them
@@ -154,12 +154,7 @@ def _improvements(
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     radius = circumradii(sides, signed_areas(points, triangles))
     poor = is_poor(sides, radius, SMALLEST_ANGLE)
-    if not poor.any():
-        return np.empty((0, 2)), np.zeros(len(edges), bool)
-    order = np.argsort(-radius[poor])
-    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
-    within, halve = entering(points, edges, centre)
-    return independent(centre[~within], reach[~within]), halve
+    return improvements(points, edges, triangles[poor], radius[poor])
 
 
 def _checked(

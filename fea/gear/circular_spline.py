@@ -46,6 +46,5 @@ def condensed_spline(
     bolted = Fixed(model.on("outside"), TANGENTIAL)
     still = Fixed(model.on("outside")[:1], AXIAL)  # else it could drift along the axis
     found = condensed(model, ports, last, held=[bolted], loose=[still])
-    surface = float(model.space.places[model.on("mesh"), 0].mean())
     places = np.arange(len(face))
-    return at_pitch_point(found, places, len(face) + places, (pitch_radius - surface) / surface)
+    return at_pitch_point(model, pitch_radius, found, places, len(face) + places)

@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.bisection import refined, refined_while
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
@@ -92,16 +92,21 @@ def condensed_rim(
         *along(model, "seat", seat),
     ]
     shares = (shares_along(model, patch, z) for patch, z in (("mesh", face), ("seat", seat)))
-    surface = float(model.space.places[model.on("mesh"), 0].mean())
     rim = Rim(condensed(model, ports, last), *shares)
-    lift = (pitch_radius - surface) / surface
-    return replace(rim, body=at_pitch_point(rim.body, rim.radial, rim.tangential, lift))
+    body = at_pitch_point(model, pitch_radius, rim.body, rim.radial, rim.tangential)
+    return replace(rim, body=body)
 
 
 def at_pitch_point(
-    body: Condensed, radial: np.ndarray, tangential: np.ndarray, lift: float
+    model: HarmonicModel,
+    pitch_radius: float,
+    body: Condensed,
+    radial: np.ndarray,
+    tangential: np.ndarray,
 ) -> Condensed:
-    """Ports of a toothed surface, (f,) each, moved to the pitch point `lift` surface radii over it."""
+    """Ports of a model's toothed surface, (f,) each, moved to the pitch point over it."""
+    surface = float(model.space.places[model.on("mesh"), 0].mean())
+    lift = (pitch_radius - surface) / surface
     harmonics = body.harmonics.copy()
     for i, part in enumerate(harmonics):
         lever = np.eye(len(part))
@@ -120,8 +125,10 @@ def triangulated(outline: Meridian) -> MeridianMesh:
 
 def fine_enough(mesh: MeridianMesh, patch: str, places: int) -> MeridianMesh:
     """Refined along the patch until that has two edges for each place."""
-    while True:
+
+    def along(mesh: MeridianMesh) -> np.ndarray:
         ends = mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))]
-        if len(ends) >= 2 * places:
-            return mesh
-        mesh = refined(mesh, np.isin(mesh.triangles, ends).sum(axis=1) > 1)
+        touching = np.isin(mesh.triangles, ends).sum(axis=1) > 1
+        return np.asarray(touching & (len(ends) < 2 * places))
+
+    return refined_while(mesh, along)

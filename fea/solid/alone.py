@@ -8,15 +8,16 @@ from contextlib import contextmanager
 from flexspline.fea.process_lock import ProcessLock
 
 LARGE = 30_000
-"""Elements: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5 GB of factors in single
-precision. Two of 30 688 and 35 016 at once made 2.45 GB of a command with factors in double."""
+"""A model of this many elements is large: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5
+GB of factors in single precision. With factors in double, one command took 2.45 GB when models of 30 688 and
+35 016 elements were solved at once."""
 _LOCK = ProcessLock(0)
-"""Place 0 of the locks, which is its own: the cache takes those from 1 on (`pipeline/cache.py`)."""
+"""Place in the file of locks. The cache uses the places from 1 on (`pipeline/cache.py`)."""
 
 
 @contextmanager
 def alone(elements: int) -> Iterator[None]:
-    """While the context lasts no other thread, and no copy of this process, is in one for a model of LARGE
+    """Only one thread at a time, in this process and its copies, enters this context with a model of LARGE
     elements or more."""
     if elements < LARGE:
         yield

@@ -1,29 +1,29 @@
 """Bisection of tetrahedron edges, with all elements and facets that contain them.
 
-Edges are ranked by length, of equal ones by number. Each tetrahedron is halved at the highest of its edges
-that are asked for, as in bisection of longest edges (Rivara, Int. J. Numer. Methods Eng. 20, 1984, 745-756),
-and its halves at theirs. What becomes of a face follows from its own edges alone: both its tetrahedra, and
-the boundary's facet, are cut alike.
+Edges are ranked by length; equal lengths are ranked by number. Each tetrahedron is halved at the
+highest-ranked of its edges that are to be halved, as in bisection of longest edges (Rivara, Int. J. Numer.
+Methods Eng. 20, 1984, 745-756), and its halves at theirs. How a face is cut depends on its own edges alone,
+so both its tetrahedra and the boundary's facet are cut in the same way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.fea.edges import SIDES, distinct_edges, edge_numbers
+
 PAIRS = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 """Edges of a tetrahedron."""
-SIDES = np.array([[0, 1], [1, 2], [2, 0]])
-"""Edges of a triangle."""
 
 
 @dataclass(frozen=True)
 class Simplices:
     """Tetrahedra (m, 4), positive, and facets (k, 3), outward, each on a surface (k,), of `nodes` nodes.
 
-    `parents` (m,): of halved ones, the tetrahedron that each is a part of.
+    `parents` (m,), after halving: the tetrahedron of the mesh before that each is a part of.
     """
 
     nodes: int
@@ -34,8 +34,7 @@ class Simplices:
 
     def edges(self) -> np.ndarray:
         """(e, 2), each once, the lesser node first."""
-        key = np.unique(_keys(self.tets[:, PAIRS].reshape(-1, 2), self.nodes))
-        return np.column_stack([key // self.nodes, key % self.nodes])
+        return distinct_edges(self.tets[:, PAIRS], self.nodes)
 
 
 def halved(
@@ -43,10 +42,13 @@ def halved(
 ) -> tuple[Simplices, np.ndarray]:
     """The mesh with those of its edges (e, 2) halved that are `asked` (e,); `lengths` (e,) rank them.
 
-    Also the edges (j, 2) that were: the nodes between are numbered from `mesh.nodes` on, in their order.
+    Also returns the halved edges (j, 2). Their new middle nodes are numbered from `mesh.nodes` on, in this
+    order.
     """
+    if not np.any(asked):
+        return replace(mesh, parents=np.arange(len(mesh.tets))), edges[:0]
     n = mesh.nodes
-    key = _keys(edges, n)
+    key = edge_numbers(edges, n)
     rising = np.argsort(key)
     edges, lengths, key = edges[rising], lengths[rising], key[rising]
     halve = np.asarray(asked)[rising]
@@ -61,9 +63,9 @@ def halved(
         """Ranks of pairs of nodes, -1 where they are not to be halved, and the nodes between."""
         old = np.asarray((pairs < n).all(axis=-1))
         at = np.minimum(
-            np.searchsorted(key, _keys(np.where(old[..., None], pairs, 0), n)), len(key) - 1
+            np.searchsorted(key, edge_numbers(np.where(old[..., None], pairs, 0), n)), len(key) - 1
         )
-        there = old & (key[at] == _keys(pairs, n)) & halve[at]
+        there = old & (key[at] == edge_numbers(pairs, n)) & halve[at]
         return np.where(there, rank[at], -1), middle[at]
 
     tets, whose = _cut(mesh.tets, PAIRS, marked_rank)
@@ -94,8 +96,3 @@ def _cut(
         other[rows, pairs[best, 0]] = node
         simplices, own = np.vstack([one, other]), np.concatenate([own, own])
     return np.vstack(done), np.concatenate(owners)
-
-
-def _keys(pairs: np.ndarray, nodes: int) -> np.ndarray:
-    """One number for each pair (..., 2) of nodes."""
-    return pairs.min(axis=-1).astype(np.int64) * nodes + pairs.max(axis=-1)

@@ -20,8 +20,8 @@ INTERFACE = "interface"
 HOLE = "hole"
 CORE_RIM = "core_rim"
 SHARE = 0.3
-"""How far the interface lies from the holes towards the next feature of the meridian: nearer, and the
-plan's triangles beside it are small and many; farther, and the meridian's are."""
+"""Where the interface lies, as a share of the distance from the holes to the next feature of the meridian. If
+it is nearer, the plan's triangles beside it are small and many; if it is farther, the meridian's are."""
 NARROW_OF_RADIUS, NARROW_OF_HEIGHT = 0.1, 0.02
 """A land between the holes and that feature narrower than these shares of the hole's radius and of the
 column's height is left to the mesher: fair triangles in it are too many (30 000 elements on a cup's
@@ -29,8 +29,8 @@ land of 0.05 mm, 400 000 on one of 0.005)."""
 LARGEST_ARC = pi / 2
 """[rad] Of an outline's arc, which stays clearly below the 180° that `Segment` allows."""
 COLUMN_CORE = 0.5
-"""Where the column reaches the axis, the plan's triangles end at this share of the holes' nearest radius:
-within, they would have the sector's angle, a needle's."""
+"""Share of the holes' smallest radius at which the plan's triangles end if the column reaches the axis.
+Nearer to the axis they would be needles with the sector's angle."""
 
 
 @dataclass(frozen=True)

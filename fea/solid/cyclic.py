@@ -29,23 +29,25 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 HALF_DEG = 180.0
-"""Half of the circle: half a repeat of n is one n-th of it."""
+"""[deg] Half of the circle. Half a repeat of a part with n repeats is one n-th of it."""
 
 
 def repeats_of(mesh: TetMesh) -> int:
-    """n of a part of which the mesh is half a repeat; 1 of a half and of the whole."""
+    """Number of repeats n of the part whose half repeat this mesh is; 1 for a mesh of a half or of the whole
+    part."""
     return max(1, round(HALF_DEG / mesh.sector_deg))
 
 
 def larger_deg(mesh: TetMesh) -> float:
-    """Of the sector that stands for the part under two lobes: a quarter where n is even, else half."""
+    """Angle [deg] of the sector that represents the part under two lobes: a quarter if n is even, else
+    half."""
     return max(mesh.sector_deg, HALF_DEG if repeats_of(mesh) % 2 else HALF_DEG / 2)
 
 
 def half_repeat(mesh: TetMesh) -> TetMesh:
     """The mesh; its part's half where n is odd and the part has an axis.
 
-    A wave of order 1 moves the axis sideways, which would tie one of its fields to the other there.
+    On half a repeat a wave of order 1 moves the axis sideways, which would couple its two fields there.
     """
     on_axis = (np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1]) == 0).any()
     odd = repeats_of(mesh) % 2 == 1
@@ -72,9 +74,9 @@ class SolvedWave:
 
 
 class WaveSupports:
-    """Prescribed components of a wave; what is set later wins.
+    """Prescribed components of a wave; a later value replaces an earlier one.
 
-    `antisymmetric`: the load is that of torsion under a reflection at angle 0, else that of the ellipse.
+    `antisymmetric`: under a reflection at angle 0 the load behaves as torsion, else as the ellipse.
     """
 
     def __init__(self, model: Model, wave: CyclicWave, antisymmetric: bool) -> None:

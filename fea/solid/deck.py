@@ -15,7 +15,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 DECK_ANGLE_RAD = 1e-3
-"""Θ of the deck: the analysis is linear, so it only sets the size of the printed reactions."""
+"""[rad] Rotation Θ in the deck. The analysis is linear, so it only scales the printed reactions."""
 PER_LINE = 12
 """Node numbers in a line of a set; the format allows 16."""
 

@@ -15,30 +15,33 @@ CHORD_PER_ENVELOPE = 1.5
 surfaces afterwards, so neither limits accuracy, and coarse chords mesh faster."""
 CUT_EDGES = 2.0
 """How far cuts reach from patch edges, in the first mesh's smallest edges. Beside the middle of a wide cut
-the winding number is 1/2, where fTetWild's filter, an approximation, takes an element for outside: cuts
-across thick walls became cracks."""
+the winding number is 1/2, and fTetWild's approximate filter then takes an element for outside: cuts across
+thick walls became cracks."""
 FAR_WALLS_OF_SHAFT, FAR_WALLS = 0.45, 5
-"""Largest edge in walls: two elements and more through a shaft's wall, one layer of long ones in
-a thin tube."""
+"""Largest edge over the wall thickness: a shaft's wall gets two or more elements, a thin tube one layer of
+long elements."""
 NEAR_SHARE = 0.4
-"""Smallest edge over the largest, in shafts. In flexsplines it is the wall: on the example's cup 0.4 → 2 mm,
-whose K is 0.7 % high (docs/decisions.md, Grading)."""
+"""Smallest edge over the largest in shafts. In flexsplines the smallest edge is the wall thickness: on the
+example's cup 0.4 → 2 mm, whose K is 0.7 % high (docs/decisions.md, Grading)."""
 NEAR_OF_RADIUS = 50
-"""The smallest edge in a flexspline is at most its outer radius over this, as the example cup's wall is: a
-thicker wall is meshed as finely at its edges."""
+"""Outer radius over the smallest edge of a flexspline, at least. It is that of the example cup's wall;
+thicker walls are meshed as finely at their edges."""
 LEAST_GRADING = 2
-"""Largest over smallest edge of a flexspline, at least: edges grow away from the singular ones in all."""
+"""Largest over smallest edge of a flexspline, at least, so that in every flexspline edges grow with the
+distance from singular edges."""
 EDGE_GROWTH = 0.7
-"""Of the edge length per distance from the singular edges, of that same mesh."""
+"""Growth of the edge length per distance from the singular edges, in the same mesh."""
 ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
-"""How far the mesher may stray, in a flexspline's wall and a shaft's largest edge: the nodes are put back."""
+"""Envelopes of the mesher in a flexspline's wall, and in a shaft's largest edge. The nodes are moved back
+onto the surface afterwards."""
 FINEST_SHARE = 20
-"""The largest edge is at least this share of the outer radius: a wall of a hundredth of it needs one
-layer of long elements, not a part full of short ones."""
+"""Outer radius over the largest edge, at most. A wall of a hundredth of the radius then gets one layer of
+long elements, and the part is not filled with short ones."""
 
 LARGEST_BEND = 0.5
-"""How far the middle of a keyway's floor may move against its corners, of the material below it: on a shaft
-of 16 mm with a bore of 6 slots up to there keep the volume to 1e-4, beyond they are off by 0.1 to 0.9 %."""
+"""How far the middle of a keyway's floor may move relative to its corners, as a share of the material below
+it. On a shaft of 16 mm with a bore of 6 mm the volume is right to 1e-4 up to this share; beyond, it is off by
+0.1 to 0.9 %."""
 
 
 def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
@@ -80,7 +83,7 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
 
 
 def _bends(part: Part) -> bool:
-    """Whether a keyway's floor leaves its place in unrolled space, where its plane is r = floor/cos φ."""
+    """Whether unrolled space bends a keyway's floor too far: its plane becomes r = floor/cos φ."""
     slot, shape = part.keyway, part.shape
     if slot is None or not isinstance(shape, Shaft):
         return False

@@ -21,14 +21,14 @@ Back = Callable[[np.ndarray], np.ndarray]
 SINGLE_FROM = 10_000
 """Unknowns from which `direct` factorises in single precision: smaller ones take 0.1 s in double."""
 FACTORED_ENERGY = 1e-15
-"""Energy of the error over f·u at which the steps with factors in single precision end: that of factors in
-double is 1e-29 in torsion, 1e-16 in a thin free rim."""
+"""Energy of the error over f·u at which the steps with factors in single precision end. Factors in double
+leave 1e-29 in torsion and 1e-16 in a thin free rim."""
 FACTORED_ROUNDS = 2
-"""The second begins with the true residual, one step as a rule: the first one's rounding takes K of a free
-rim off by 1e-8, and that step leaves 2e-10."""
+"""Times that the steps start from the true residual. Rounding in the first run makes K of a free rim wrong by
+1e-8. The second run, mostly one step, leaves 2e-10."""
 FACTORED_STEPS = 30
-"""At most: 2 to 3 in torsion, 3 to 4 on the ellipse, 4 to 15 in free rims (walls of 1/80 to 1/370 of the
-diameter, 24 000 to 216 000 unknowns)."""
+"""Most steps of a run. Measured: 2 to 3 in torsion, 3 to 4 on the ellipse, 4 to 15 in free rims (walls of
+1/80 to 1/370 of the diameter, 24 000 to 216 000 unknowns)."""
 
 
 @contextmanager

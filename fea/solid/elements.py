@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 CHUNK_CELLS = 1_000
-"""Cells whose Jacobians are found at once: 1.5 MB, which stay near the processor."""
+"""Cells whose Jacobians are computed at once: 1.5 MB, which fit the processor's cache."""
 
 
 def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:

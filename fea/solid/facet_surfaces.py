@@ -1,4 +1,4 @@
-"""The surface of each facet of a mesh whose corners are computed on the surfaces."""
+"""The surface of each facet of a mesh, and its patch."""
 
 from __future__ import annotations
 
@@ -33,3 +33,11 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
         )
     away = np.where(lies, away, np.inf)
     return np.asarray((away < away.min(axis=0) + ON_SURFACE_MM).argmax(axis=0))
+
+
+def patches_of(
+    facet_surface: np.ndarray, surfaces: Sequence[Surface]
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Number (k,) of each facet's patch in a list of names, and the names, "" first: no patch."""
+    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
+    return np.array([names.index(s.patch) for s in surfaces])[facet_surface], names

@@ -31,7 +31,7 @@ class ErrorScales(NamedTuple):
     by_error: tuple[float, float]
 
     def before_two(self, mesh: TetMesh) -> float:
-        """c while there is this mesh only."""
+        """The factor c if this is the only mesh."""
         in_layers = isinstance(mesh, BisectableMesh) and mesh.in_layers
         return self.in_layers if in_layers else self.usual
 
@@ -50,7 +50,7 @@ holes, fell by four times as much. They are believed from the usual on."""
 
 
 def by_correction(cuts: str, error: str) -> str:
-    """How K is found where only what holes or a keyway change is solved on meshes."""
+    """How K is found if only the change by holes or a keyway is solved on meshes."""
     return (
         f"the part without {cuts} on its meridian, and the effect of the {cuts} by solid meshes"
         f" (Bueckner's superposition); of that effect, {error}"
@@ -75,7 +75,7 @@ class FieldSolver(Protocol[Result]):
         """On one mesh; raises SolidError, MemoryError."""
 
     def method(self, error: str) -> str:
-        """How K is found, by what is said of its estimated error."""
+        """Describes how K is found; `error` describes its estimated error."""
 
 
 def error_of(correction: SolvedCorrection, material: Elastic) -> tuple[np.ndarray, float]:

@@ -14,7 +14,7 @@ from flexspline.geometry.shaft_shape import Shaft
 
 @dataclass(frozen=True)
 class Fillet:
-    """In the corner (`r`, `z`) [mm], of this `radius`; above the corner (`up` 1) or below it (-1)."""
+    """A fillet of this `radius` in the corner (`r`, `z`) [mm], above the corner (`up` 1) or below it (-1)."""
 
     r: float
     z: float

@@ -9,9 +9,9 @@ from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 
 FLAT_ASPECT, FLAT_ELEMENTS_SHARE = 150.0, 0.1
-"""Longest edge over thickness of a flat element, and the share of such ones that makes an iteration slow. The
-flattest tenth of shafts' meshes had 4 to 55 where it took 10 to 68 steps, 70 to 103 where 100, and 255 to 418
-where 246 to 334."""
+"""Longest edge over thickness of a flat element, and the share of flat elements that makes an iteration slow.
+In meshes of shafts the flattest tenth of the elements had ratios of 4 to 55 (10 to 68 steps), 70 to 103 (100
+steps) and 255 to 418 (246 to 334 steps)."""
 
 
 def mostly_flat(mesh: TetMesh) -> bool:
@@ -20,7 +20,7 @@ def mostly_flat(mesh: TetMesh) -> bool:
 
 
 def aspects(mesh: TetMesh) -> np.ndarray:
-    """Longest edge over thickness (m,) of the elements' straight tetrahedra, 1.22 of a regular one."""
+    """Longest edge over thickness (m,) of the elements' straight tetrahedra; a regular one has 1.22."""
     tets = mesh.cells[:, :4]
     corner = mesh.nodes[tets]
     sides = [(corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]) for a, b, c in CORNER_FACES]

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.fea.edges import SIDES, distinct_edges
+from flexspline.fea.solid.bisect import Simplices, halved
 from flexspline.fea.solid.snap import undo_inverted
 from flexspline.fea.solid.unroll import MeshingMap
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -19,9 +21,11 @@ from flexspline.geometry.outline import SAME_mm, joins_smoothly
 from flexspline.geometry.surfaces import Surface, Swept
 
 NEAR_EDGE_SHARE = 0.3
-"""An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
+"""A node moves onto the patch edge if it is nearer than this share of the crossing mesh edge. Judgement: a
+cut so near to a node leaves flat elements, a node that moves farther bends its neighbours."""
 SLIP = 0.1
-"""Share of its way by which a moved node may leave another surface: along a curved one, not across one."""
+"""How far a moved node may leave another surface, as a share of its move. Moves along a curved surface stay
+below it, moves across a surface do not. Judgement."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +88,8 @@ def _with(
 ) -> MesherMesh:
     """One patch edge: near nodes onto it, other crossing edges halved, faces given to their side."""
     whole = space.back(mesh.points)
-    sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])
+    on_both = np.isin(mesh.facet_surface, (edge.first, edge.second))
+    sides = distinct_edges(mesh.faces[on_both][:, SIDES], len(mesh.points))
     beyond = edge.beyond(whole)
     beyond[np.abs(beyond) < SAME_mm] = 0.0
     crossing = sides[beyond[sides].prod(axis=1) < 0]
@@ -102,16 +107,15 @@ def _with(
     a, b = crossing.T
     at = (beyond[a] / (beyond[a] - beyond[b]))[:, None]
     between = space.to(edge.reached(space.back(points[a] + at * (points[b] - points[a]))))
-    tets, faces, surface = mesh.tets, mesh.faces, mesh.facet_surface
-    for middle, ends in enumerate(crossing, start=len(points)):
-        tets, _ = _halved(tets, ends, middle)
-        faces, parents = _halved(faces, ends, middle)
-        surface = surface[parents]
+    uncut = Simplices(len(points), mesh.tets, mesh.faces, mesh.facet_surface)
+    in_turn = -np.arange(len(crossing))
+    cut, _ = halved(uncut, crossing, in_turn, np.ones(len(crossing), bool))
+    faces, surface = cut.facets, cut.facet_surface
     beyond = np.append(beyond, np.zeros(len(crossing)))[faces].sum(axis=1)
     mine = np.isin(surface, (edge.first, edge.second))
     surface = np.where(mine & (beyond < 0), edge.first, surface)
     surface = np.where(mine & (beyond > 0), edge.second, surface)
-    return MesherMesh(np.vstack([points, between]), tets, faces, surface)
+    return MesherMesh(np.vstack([points, between]), cut.tets, faces, surface)
 
 
 def _stay(
@@ -133,17 +137,3 @@ def _stay(
 
 def _meridional(points: np.ndarray) -> np.ndarray:
     return np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
-
-
-def _sides(faces: np.ndarray) -> np.ndarray:
-    """Edges (e, 2) of triangles (k, 3), each once."""
-    return np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
-
-
-def _halved(simplices: np.ndarray, ends: np.ndarray, middle: int) -> tuple[np.ndarray, np.ndarray]:
-    """Each simplex with the edge between `ends` as two, with `middle` between, and whose parts they are."""
-    both = np.flatnonzero(np.isin(simplices, ends).sum(axis=1) == 2)
-    one, other = simplices[both], simplices[both]
-    one[one == ends[1]], other[other == ends[0]] = middle, middle
-    rest = np.delete(np.arange(len(simplices)), both)
-    return np.vstack([simplices[rest], one, other]), np.concatenate([rest, both, both])

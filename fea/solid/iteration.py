@@ -12,9 +12,9 @@ from flexspline.fea.errors import SolveError
 
 Operator = Callable[[np.ndarray], np.ndarray]
 RATE_STEPS, RATE_AGAIN = 10, 10
-"""Steps after which the rate of convergence is looked at first, and again: 15 to 60 are a usual iteration.
-Of shafts that took 246 to 334 steps, for elements 30 to 80 times as long as thick, 98 to 138 more were
-expected after ten, 4 to 71 of others."""
+"""Steps after which the rate of convergence is checked, again and again; a usual iteration takes 15 to 60.
+After ten steps, 98 to 138 more were expected of shafts that took 246 to 334 steps (elements 30 to 80 times as
+long as thick), and 4 to 71 of others."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Iterated:
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> float:
-    """a·b by one thread: BLAS would wake its own, which then wait at the cost of oneMKL's that multiply."""
+    """a·b by one thread. BLAS would start its own threads, whose waiting slows oneMKL's products."""
     return float(np.einsum("i,i", a, b))
 
 
@@ -42,7 +42,7 @@ def conjugate_gradients(
 ) -> Iterated:
     """At most `most` steps for K x = f from x = 0, until the error's energy is below `allowed` at that x.
 
-    It ends early where, by the rate of its later half, more than `worth` further steps would be needed.
+    It ends early if the rate of its later half predicts more than `worth` further steps.
 
     The energy, (x − x*)·K(x − x*), is at most r·M r over the smallest eigenvalue of M K, which the steps see
     from above: the caller checks the answer, and how many steps it took.

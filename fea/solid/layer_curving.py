@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
 from flexspline.fea.solid.bisectable import BisectableMesh
+from flexspline.fea.solid.facet_surfaces import patches_of
 from flexspline.fea.solid.layer_grading import with_middles_of
 from flexspline.fea.solid.polar import cartesian, middles, polar
 from flexspline.fea.solid.quadratic import (
@@ -23,7 +24,8 @@ from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.surfaces import Surface
 
 BENT_ROUNDS = 5
-"""Of halving bent edges; their number falls from round to round, or no more are."""
+"""Most rounds of halving bent edges. Judgement: their number falls from round to round, else the rounds
+end."""
 BENT_SHARE = 0.015
 """Of an edge's length: how far its middle lies off the straight line, where halving helps: an arc of 7°
 has so much. Of what loses less, a few edges may be straight within the check of areas. With twice as much, a
@@ -65,11 +67,8 @@ def quadratic(
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)
     nodes = straightened_too(nodes, ratio, cells, edges)
-    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
-    facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
-    return BisectableMesh(
-        nodes, cells, facets, facet_patch, names, sector_deg, mesh.facet_surface, in_layers
-    )
+    patches = patches_of(mesh.facet_surface, surfaces)
+    return BisectableMesh(nodes, cells, facets, *patches, sector_deg, mesh.facet_surface, in_layers)
 
 
 def _curved(

@@ -9,11 +9,13 @@ from math import cos
 import numpy as np
 from scipy.spatial import cKDTree
 
+from flexspline.fea.edges import SIDES, edge_numbers
 from flexspline.geometry.outline import SAME_mm, Segment, SMOOTH_rad, joins_smoothly
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Surface, Swept
 
 INSIDE_CORNER = 0.1
-"""Sine of the angle by which a facet must rise over its neighbour's plane: an inside corner, not rounding."""
+"""A corner is an inside corner if a facet rises over its neighbour's plane by an angle with at least this
+sine. Judgement: 6°, far above rounding and below the corners of parts."""
 ALONG = 5
 """Points along an edge where stress is singular, from which distances are measured."""
 
@@ -40,9 +42,8 @@ def seams_of(
     points: np.ndarray, facets: np.ndarray, facet_surface: np.ndarray, surfaces: Sequence[Surface]
 ) -> Seams:
     """Seams of a closed boundary: facets (k, 3), outward, of points (n, 3) [mm], each on a surface (k,)."""
-    n = len(points)
-    sides = facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    order = np.argsort(sides.min(axis=1).astype(np.int64) * n + sides.max(axis=1), kind="stable")
+    sides = facets[:, SIDES].reshape(-1, 2)
+    order = np.argsort(edge_numbers(sides, len(points)), kind="stable")
     one, other = order[0::2], order[1::2]
     on = np.column_stack([facet_surface[one // 3], facet_surface[other // 3]])
     mirror = np.array([s.patch in (SYMMETRY_START, SYMMETRY_END) for s in surfaces])

@@ -16,11 +16,12 @@ from flexspline.fea.solid.snap import snap_to_surfaces, undo_inverted
 from flexspline.geometry.surfaces import Surface
 
 GRADING_ROUNDS = 60
-"""Of halving, the longest edges first: 150 random shafts took 5 at most."""
+"""Most rounds of halving. 150 random shafts took 5 at most."""
 ROUND_RATIO = 2.0
-"""A round halves what is longer than is asked and than the longest edge over this, both relative."""
+"""A round halves the edges that are longer than required and longer than the longest one over this ratio;
+lengths are relative to the required ones. Judgement: the longest edges first."""
 WHOLE_STEP = 1.01
-"""Of the plan's step about the axis: rounding must not halve it."""
+"""Times the plan's step about the axis: edges of this step are not halved because of rounding."""
 
 
 def graded(

@@ -20,13 +20,13 @@ from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface
 
 TETS_OF_PRISM = 3
-"""Of one that is no wedge on the axis: those lose a third."""
+"""Tetrahedra of a prism. Wedges on the axis have a third less."""
 SUNK = 0.5
-"""Of the fillet's radius: how far the sharp corner under it moves into the material, so that no edge of
-the mesh is a tangent of the arc."""
+"""How far the sharp corner under a fillet moves into the material, as a share of the fillet's radius.
+Judgement: no mesh edge may be a tangent of the arc."""
 SUNK_OF_NEXT = 0.3
-"""Of the distance to the next node inwards and downwards, at most: of two nodes that move towards each other
-0.4 of it stays between them."""
+"""The corner moves at most by this share of the distance to the next node. Two nodes that move towards each
+other then keep 0.4 of their distance."""
 
 
 def coarsest(

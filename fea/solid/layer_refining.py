@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.fea.edges import edge_numbers
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
 from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
 from flexspline.fea.solid.layer_grading import WHOLE_STEP, with_middles_of
@@ -18,18 +19,21 @@ from flexspline.fea.solid.polar import polar
 from flexspline.geometry.surfaces import Surface
 
 LAYER_GROWTH = 0.7
-"""Of the length about the axis beyond that across, per distance from holes and keyway: as in a first mesh."""
+"""Growth of the length about the axis beyond the length across, per distance from holes and keyway: as in a
+first mesh."""
 CUT = 0.7
-"""Of an element's longest edge: shorter ones are not halved with it, so that long elements become fair."""
+"""Share of an element's longest edge. Shorter edges are not halved with it, so that long elements become well
+shaped. Judgement."""
 LEFT_AT_EDGE, LEFT_AWAY = 1 / 4, 1 / 64
-"""Of an element's squared error in each of its parts. At a singular edge all errors together halve with the
-length (a change of patch, the slowest), and two or three parts stay there; elsewhere they fall with its
-fourth power, in eight parts: 1/128, and half of them are halved along fewer edges."""
+"""Share of an element's squared error that each of its parts keeps. At a singular edge the sum of the errors
+halves with the length (at a change of patch, the slowest case), and two or three parts stay at the edge.
+Elsewhere the sum falls with the fourth power of the length in eight parts: 1/128 for each; twice that,
+because half of the elements are halved along fewer edges."""
 ROUND_SHARE = 0.04
-"""Of the elements, that a round halves at most. Judgement: small rounds: each goes by the errors that the
-one before is expected to leave."""
+"""Most elements that a round halves, as a share of all. Judgement: rounds are small because each uses the
+errors that the round before is expected to leave."""
 ELEMENTS_PER_HALVING = 7.0
-"""More elements by one that is halved; its neighbours' parts come on top, so that the last round is small."""
+"""Elements that one halved element adds. Its neighbours' parts come on top, so the last round is small."""
 HALVING_ROUNDS = 40
 """Of halving: 2 to 3 double the elements."""
 
@@ -90,10 +94,8 @@ def _lengths(
     About the axis they count for less with the distance from holes and keyway.
     """
     edges = mesh.edges()
-    n = len(points)
-    pairs = np.sort(mesh.tets[:, PAIRS], axis=2).astype(np.int64)
     of_element = np.searchsorted(
-        edges[:, 0].astype(np.int64) * n + edges[:, 1], pairs[..., 0] * n + pairs[..., 1]
+        edge_numbers(edges, len(points)), edge_numbers(mesh.tets[:, PAIRS], len(points))
     )
     ends = polar(points)[edges]
     dr, turn, dz = (ends[:, 1] - ends[:, 0]).T

@@ -22,10 +22,10 @@ from flexspline.geometry.shaft_shape import Shaft
 RING_STEP = np.radians(20)
 """Largest edge about the axis: parabolas of 20° lose 2e-5 of a circle's area."""
 LAYER_CORE = 0.4
-"""Of the least radius at which something happens: within it, a plan that reaches the axis is a fan."""
+"""Share of the smallest radius of a line. Inside it, a plan that reaches the axis is a fan of triangles."""
 LAYERS_PER_FAR = 1.15
-"""Layers are at most the largest edge over this high: the tetrahedra of higher ones become eight each. On six
-shafts twice that height gave 1.0 to 2.4 times as many elements."""
+"""Largest edge over the height of a layer, at least. Tetrahedra of higher layers would be cut into eight. On
+six shafts, layers twice as high gave 1.0 to 2.4 times as many elements."""
 
 
 @dataclass(frozen=True)

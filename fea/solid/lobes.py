@@ -1,8 +1,8 @@
 """K_b when the torque enters at the two lobes, on finer and finer solid meshes.
 
-Which meshes: without the seat's support the rim ovalises, which a mesh made for torsion cannot follow. Two
-things matter (docs/decisions.md): steps about the axis that are short against √(R t), and a meridian that
-is fine where this load bends it, which the harmonics of the part without holes tell at little cost.
+Without the seat's support the rim ovalises, and a mesh made for torsion cannot follow. Two things matter
+(docs/decisions.md): steps about the axis that are short against √(R t), and a meridian that is fine where
+this load bends it, which the harmonics of the part without holes tell at little cost.
 """
 
 from __future__ import annotations
@@ -29,27 +29,31 @@ from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.percent import percent
 
 LOBE_STEP = 0.37
-"""Of √(t/R), about the axis, for 0.5 %: 3.0° on a wall of a fiftieth of the radius. The error of quadratic
-elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six
-first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 15 and 11 s of the
-processor."""
+"""Step about the axis over √(t/R) [rad], for 0.5 %: 3.0° on a wall of a fiftieth of the radius. The error of
+quadratic elements goes with the fourth power of the step. With 0.40, and 0.3 of the tolerance on the
+meridian, two of six first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took
+15 and 11 s of the processor."""
 MERIDIAN_SHARE = 0.25
-"""Of the tolerance: what the harmonics' estimate of the meridian's error may be. The usual scale of 2 makes
-half of the tolerance of it, and the steps take about a quarter."""
+"""The harmonics' estimate of the meridian's error may take this share of the tolerance. With the usual scale
+of 2 this is half of the tolerance, and the steps take about a quarter."""
 SOLID_BULK = 0.4
-"""Share of that error whose triangles are refined each round: more rounds, fewer triangles too many."""
+"""Share of that error in the triangles that each round refines. Judgement: small shares take more rounds but
+refine fewer triangles needlessly."""
 TAIL = 1e-3
-"""Of the energy: harmonics beyond play no part in where the mesh is refined."""
+"""Harmonics that add less than this share of the energy do not count in the choice of triangles to refine.
+Judgement."""
 STEP_TOLERANCE = 0.005
-"""Of K, to which LOBE_STEP belongs; the error of parabolas goes with the fourth power of the step."""
+"""Tolerance of K to which LOBE_STEP belongs. The error of parabolas goes with the fourth power of the
+step."""
 NEXT_STEP, NEXT_SHARE = 0.7, 0.4
-"""From mesh to mesh, where the first one did not do."""
+"""Factors of the step and of the share from mesh to mesh, if the first one misses the tolerance. 0.7⁴ is a
+quarter. Judgement."""
 
 
 def finer_mesh(
     wall_mm: float, radius_mm: float, material: Elastic, tolerance: float, number: int
 ) -> Finer:
-    """What the mesh of that number (0, 1, …) of the case without support asks for."""
+    """Requirements of the case without support on its mesh number 0, 1, …."""
     step = (
         LOBE_STEP
         * sqrt(wall_mm / radius_mm)

@@ -18,35 +18,35 @@ from flexspline.fea.pardiso import pardiso
 
 SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 25_000, False: 50_000}
-"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors (in
-single precision, with their own steps) and of iteration, two threads: 30 000 0.74 and 0.25, 33 000 0.50 and
-0.29, 39 400 0.6 and 0.28, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000 8.8 and 2.2,
-270 000 13.7 and 4.2; one thread, as beside another program: 30 000 1.16 and 0.38, 39 400 1.15 and 0.43.
-Where an iteration takes many steps factors follow (`steps_of_factors`)."""
+"""Unknowns up to which factors are as fast as an iteration or faster, with and without MKL. Seconds of
+factors (in single precision, with their own steps) and of iteration, two threads: 30 000 0.74 and 0.25, 33
+000 0.50 and 0.29, 39 400 0.6 and 0.28, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000
+8.8 and 2.2, 270 000 13.7 and 4.2; one thread, as beside another program: 30 000 1.16 and 0.38, 39 400 1.15
+and 0.43. Where an iteration takes many steps factors follow (`steps_of_factors`)."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 75.0
-"""The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 to 73 in cups of
+"""The same with MKL for a part that is mostly surface: it has fewer entries per unknown (65 to 73 in cups of
 one or two layers, 75 to 83 in shafts and thick hats), its factors are small, and its flat elements take many
 steps (a cup with a wall of 1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which
 were not enough; another, 85 000: 2.7 and 6.4 s)."""
 STEPS_PER_ROOT = 0.25
-"""Steps of an iteration that take as long as factors, per √unknowns: 65, 87 and 120 for 52 000, 126 000 and
-173 000 unknowns of three shafts."""
+"""Steps of an iteration that take as long as factors, divided by √unknowns: 65, 87 and 120 for 52 000, 126
+000 and 173 000 unknowns of three shafts."""
 ENTRY_BYTES = 38.0
-"""Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
+"""Bytes per entry of the matrix while it is factorised: the free part, its triangle, the ordering."""
 FACTOR_BYTES = 72.0
-"""Per unknowns^(4/3): the factors in double, 26 000 to 600 000 unknowns within 15 %; half in single
-precision, where double may have to follow."""
+"""Bytes of the factors in double over unknowns^(4/3), within 15 % from 26 000 to 600 000 unknowns. Single
+precision takes half, but factors in double may have to follow."""
 LU_FACTORS = 2.0
 """SuperLU keeps both triangles."""
 ITERATION_ENTRY_BYTES = 24.0
-"""Per entry when it is iterated: K by blocks in double and single precision (13), and the product with the
-interpolation while it is made; 22 were measured for 173 000 and 270 000 unknowns."""
+"""Bytes per entry during an iteration: K by blocks in double and single precision (13), and the product with
+the interpolation while it is made; 22 were measured for 173 000 and 270 000 unknowns."""
 CORNER_SHARE = 1 / 7.0
-"""Corners' unknowns over all, at most (1/7.3 to 1/8 measured)."""
+"""Unknowns of the corners over all unknowns, at most. Measured: 1/7.3 to 1/8."""
 ASSEMBLY_ENTRY_BYTES = 30.0
-"""Per entry while the matrix is assembled, itself included."""
+"""Bytes per entry while the matrix is assembled, the matrix included."""
 ENTRIES_PER_UNKNOWN = 85.0
-"""Before there is a matrix: 71 to 81 measured."""
+"""Entries per unknown, before the matrix exists. Measured: 71 to 81."""
 
 
 def direct_bytes(unknowns: int, entries: float) -> float:
@@ -109,7 +109,7 @@ def available_bytes() -> float:
 
 
 def _machine_free_bytes() -> float:
-    """What the machine has without swapping; inf where it does not say (no /proc, say)."""
+    """Free memory of the machine without swapping [bytes]; inf if it is not known, as without /proc."""
     try:
         return float(psutil.virtual_memory().available)
     except OSError:

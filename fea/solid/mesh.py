@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.errors import MeshQualityError
+from flexspline.fea.solid.facet_surfaces import patches_of
 from flexspline.fea.solid.imprint import MesherMesh, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
@@ -27,12 +28,13 @@ from flexspline.geometry.percent import percent
 from flexspline.geometry.tagged import TaggedSurface
 
 ASTRAY_SHARE = 0.002
-"""Of the boundary: a few facets across sharp edges; a crack along a cut would be many."""
+"""Share of the boundary that may face another way than the CAD. A few facets across sharp edges do; a crack
+along a cut would be many facets."""
 ENVELOPES_PER_EDGE = 6
-"""The envelope stays this much below the smallest edge: above it the mesher's surface has cracked."""
+"""Smallest edge over the envelope, at least. With wider envelopes the mesher's surface has cracked."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
-"""Edge lengths of the attempts at a mesh, over those asked for, and whether they may be in unrolled space:
-other edges make another mesh, and the last attempt does without the unrolling."""
+"""For each attempt at a mesh: its edge lengths over those asked for, and whether it may use unrolled space.
+Other edges make another mesh, and the last attempt does without the unrolling."""
 
 
 @dataclass(frozen=True)
@@ -161,8 +163,7 @@ def _quadratic(
         spec.snap_limit,
     )
     nodes = straightened(nodes, cells, edges, facets)
-    names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
-    facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
-    made = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
+    patches = patches_of(facet_surface, surface.surfaces)
+    made = TetMesh(nodes, cells, facets, *patches, surface.sector_deg)
     check_against_cad(made, surface)
     return made

@@ -16,23 +16,25 @@ from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_pl
 from flexspline.geometry.tagged import TaggedSurface
 
 AREA_TOLERANCE = 0.005
-"""A patch whose mesh area is farther than this from its CAD area is refused: parabolas for arcs of a coarse
-mesh leave 0.1 %, facets on the wrong side of a patch edge more."""
+"""Largest relative difference of a patch's area from its CAD area. Parabolas for the arcs of a coarse mesh
+leave 0.1 %; facets on the wrong side of a patch edge leave more."""
 VOLUME_TOLERANCE = 0.01
-"""Parabolas for arcs of a coarse mesh lose 0.1 %; a mesh with a hole closed is off by more."""
+"""Largest relative difference of the volume. Parabolas for the arcs of a coarse mesh lose 0.1 %; a mesh with
+a closed hole is off by more."""
 SIZE_TOLERANCE = 1e-3
-"""Of volume and patch areas of a mesh made without a mesher; parabolas for arcs of 15° leave 1e-5, for arcs
-of 20° 2e-5, a few straight edges of holes more."""
+"""The same for a mesh that no mesher made. Parabolas leave 1e-5 for arcs of 15° and 2e-5 for arcs of 20°, a
+few straight edges of holes leave more."""
 VOLUME = "volume"
-"""Stands beside the patches' names in `check_sizes`."""
+"""Name of the volume beside the patches' names in `check_sizes`."""
 OFF_PLANE = 1e-6
-"""Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
+"""Largest distance of a symmetry plane's nodes from it, as a share of the part's size: rounding."""
 LEAST_SHAPE = 1e-7
 """Least volume over the cube of the longest edge; 0.12 for a regular tetrahedron, 0.006 or more in meshes."""
 
 
 def refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
-    """Beside the axis two nodes can go to one place of it, and the tetrahedron between has no volume."""
+    """Beside the axis, two nodes can be projected to the same place, so that their tetrahedron has no
+    volume."""
     flat = signed_volumes(points, tets) < LEAST_SHAPE * longest_edges(points, tets) ** 3
     if flat.any():
         raise MeshQualityError(
@@ -85,7 +87,8 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
 
 
 def _in_words(patch: str) -> str:
-    """A user knows the named patches (docs/contract.md), not the planes that a sector is cut at."""
+    """The name of a patch in messages. Users know the named patches (docs/contract.md), but not the planes at
+    which a sector is cut."""
     if patch in (SYMMETRY_START, SYMMETRY_END):
         return "the plane at which the part is cut for its symmetry"
     return "the volume" if patch == VOLUME else f"patch '{patch}'"

@@ -15,8 +15,8 @@ from flexspline.fea.stress_rule import judged
 from flexspline.fea.types import Elastic, SolidField, StressPeak, TetMesh
 
 LATTICE = 6
-"""Stresses are looked at on a lattice of this many steps along the sides of every boundary facet, so
-that the figure does not depend on where nodes happen to lie."""
+"""Steps along the sides of every boundary facet of the lattice on which stresses are evaluated. The peak then
+does not depend on where nodes happen to lie. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -16,28 +16,30 @@ from scipy.spatial import Delaunay
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, edge_lengths, signed_areas
 from flexspline.fea.axisymmetric.ruppert import (
     TOUCH,
-    circumcentres,
     circumradii,
     encroached,
-    entering,
-    independent,
+    improvements,
     is_flat,
     is_poor,
 )
+from flexspline.fea.edges import SIDES, edge_numbers
 from flexspline.fea.solid.plan_curves import Curve
-from flexspline.fea.solid.plan_edges import PlanEdges, keys
+from flexspline.fea.solid.plan_edges import PlanEdges
 
 SMALLEST_PLAN_ANGLE = np.radians(20)
-"""Of large triangles: what Ruppert's proof covers."""
+"""Smallest angle of large triangles: the limit of Ruppert's proof."""
 FLATTENED_TRIANGLE = 0.3
-"""Of a triangle's area in the map: one that keeps less with straight sides lies along too long an arc."""
+"""Share of its area in the map that a triangle must keep with straight sides; if it keeps less, it lies along
+too long an arc. Judgement."""
 OFF_LINE = 0.12
-"""Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
-middle node moved by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
+"""How far the middle of a line may lie off the middle of its mesh edge, towards the triangle, as a share of
+the triangle's height. Half of 1/4: a middle node moved by 1/4 of the height makes the Jacobian 0 at the
+edge's ends."""
 PLAN_ROUNDS = 60
-"""Plans of 150 random shafts took 30 at most."""
+"""Most rounds. Plans of 150 random shafts took 30 at most."""
 PLAN_POINTS = 4_000
-"""A plan is repeated for each layer: more, and lines lie too near each other."""
+"""Most points of a plan, which is repeated for each layer. If it needs more, its lines lie too near each
+other. Judgement."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class PlanMesh:
 def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> PlanMesh:
     """The sector from angle 0 to `sector` [rad], between the least and the largest radius of its lines.
 
-    Of `curves`, the bounds of the sector are some. Triangles whose sides are below `smallest_mm` may be poor.
+    The bounds of the sector are among `curves`. Triangles whose sides are below `smallest_mm` may be poor.
 
     Raises
     ------
@@ -90,26 +92,19 @@ def _improvements(
     own: PlanEdges, triangles: np.ndarray, smallest_mm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
-    corner, sides = own.points[triangles], edge_lengths(own.points, triangles)
+    sides = edge_lengths(own.points, triangles)
     radius = circumradii(sides, signed_areas(own.points, triangles))
-    scale = np.exp(corner[:, :, 0].mean(axis=1))
+    scale = np.exp(own.points[triangles, 0].mean(axis=1))
     poor = is_poor(sides, radius, SMALLEST_PLAN_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
-    if not poor.any():
-        return np.empty((0, 2)), np.zeros(len(own.ends), bool)
-    order = np.argsort(-radius[poor])
-    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
-    within, halve = entering(own.points, own.ends, centre)
-    low, high = own.points.min(axis=0), own.points.max(axis=0)
-    free = ((centre > low) & (centre < high)).all(axis=1) & ~within
+    added, halve = improvements(own.points, own.ends, triangles[poor], radius[poor])
     middle = own.points[own.ends].mean(axis=1)
-    halve &= own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm
-    return independent(centre[free], reach[free]), halve
+    return added, halve & (own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm)
 
 
 def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middles (j, 2) of the longest sides of triangles that straight sides flatten, or the edges to halve.
 
-    Edges are too that lie too far off their line for the triangles beside them.
+    Edges that lie too far off their line for the triangles beside them are halved too.
     """
     u, phi = own.points.T
     n = len(own.points)
@@ -119,15 +114,15 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
     mine = triangles[signed_areas(straight, triangles) < FLATTENED_TRIANGLE * scale * area]
     longest = edge_lengths(own.points, mine).argmax(axis=1)
     rows = np.arange(len(mine))
-    flat = keys(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
-    lines = keys(own.ends, n)
-    pairs = triangles[:, [[0, 1], [1, 2], [2, 0]]]
+    flat = edge_numbers(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
+    lines = edge_numbers(own.ends, n)
+    pairs = triangles[:, SIDES]
     off = own.middles() - own.points[own.ends].mean(axis=1)
     order = np.argsort(lines)
-    at = order[np.minimum(np.searchsorted(lines[order], keys(pairs, n)), len(lines) - 1)]
+    at = order[np.minimum(np.searchsorted(lines[order], edge_numbers(pairs, n)), len(lines) - 1)]
     along = own.points[pairs[..., 1]] - own.points[pairs[..., 0]]
     inwards = along[..., 0] * off[at, 1] - along[..., 1] * off[at, 0]  # over the edge's length
-    near = (lines[at] == keys(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
+    near = (lines[at] == edge_numbers(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
     free = np.setdiff1d(flat, lines)
     added = (own.points[free // n] + own.points[free % n]) / 2
     return added, np.isin(lines, np.union1d(flat, lines[at[near]]))
@@ -136,8 +131,8 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
 def _checked(own: PlanEdges, triangles: np.ndarray) -> PlanMesh:
     """Refuse a plan that lacks an edge of a line, or does not fill its rectangle."""
     n = len(own.points)
-    sides = triangles[:, [[0, 1], [1, 2], [2, 0]]]
-    missing = ~np.isin(keys(own.ends, n), keys(sides, n))
+    sides = triangles[:, SIDES]
+    missing = ~np.isin(edge_numbers(own.ends, n), edge_numbers(sides, n))
     span = np.ptp(own.points, axis=0).prod()
     covered = signed_areas(own.points, triangles).sum()
     if missing.any() or not abs(covered / span - 1) < 1e-9:  # rounding of a few thousand areas

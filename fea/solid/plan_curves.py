@@ -12,9 +12,10 @@ from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.outline import SAME_mm, SAME_rad
 
 SMALLEST_PIECE = 1e-6
-"""Of a line's range: crossings nearer than this to each other are one."""
+"""Crossings that are nearer to each other than this share of the line's range are one: rounding."""
 HOLE_STEP = np.radians(22.5)
-"""Largest edge about a hole's axis, before the elements there are made as short as is asked."""
+"""[rad] Largest edge about a hole's axis at first: 16 edges around it. Elements there are then halved as the
+grading requires."""
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,17 @@ from flexspline.fea.solid.plan_curves import Curve, pieces
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 ACUTE = 0.35
-"""Of the shortest line that ends at a crossing: all are cut at this distance from it, so that edges there are
-alike and halving one does not ask for halving the next without end."""
+"""Share of the shortest line that ends at a crossing. All lines are cut at this distance from the crossing,
+so that edges there are equal and halving one does not require halving the next without end."""
 ACUTE_COSINE = 0.5
-"""Of the angle, 60°, below which two edges' halves lie in each other's circle."""
+"""Cosine of 60°: below this angle, the halves of two edges lie in each other's circle."""
 TANGENT = 1e-3
-"""Of an edge's range, over which its direction at an end is taken."""
+"""Share of an edge's range over which its direction at an end is computed. Judgement: a nearly straight
+piece, far above rounding."""
 HALVINGS = 40
-"""Of a range: what is left is rounding."""
+"""Halvings of a range by bisection: 1e-12 of it is left."""
 MERGED_DISTANCE = 1e-9
-"""In the map: nearer points are one."""
+"""Points nearer than this in the map are one: rounding."""
 
 
 def mapped(points: np.ndarray, sector: float) -> np.ndarray:
@@ -96,7 +97,8 @@ class PlanEdges:
         )
 
     def _shorten_at_crossings(self) -> None:
-        """Equal edges at each vertex where lines meet at less than 60°, both ends of an edge in turn."""
+        """Makes edges equally long at each vertex where lines meet at less than 60°; first at one end of each
+        edge, then at the other."""
         sharp = self._acute()
         if not sharp.any():
             return
@@ -151,8 +153,3 @@ def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first = np.array([min(group) for group in near])
     kept, number = np.unique(first, return_inverse=True)
     return points[kept], number
-
-
-def keys(pairs: np.ndarray, n: int) -> np.ndarray:
-    """One number for each pair (..., 2) of `n` points."""
-    return np.asarray(pairs.min(axis=-1).astype(np.int64) * n + pairs.max(axis=-1))

@@ -15,7 +15,8 @@ from flexspline.fea.solid.column import HOLE, INTERFACE, HoledColumn
 from flexspline.geometry.outline import SAME_mm
 
 FILLED_RADII = (0.6, 0.25)
-"""Rings of nodes within a hole's circle, where material closes the hole above."""
+"""Radii of two rings of nodes within a hole's circle, over the hole's radius, where material closes the hole
+above. Judgement."""
 ROTATIONS = np.array([
     [0, 1, 2, 3, 4, 5], [1, 2, 0, 4, 5, 3], [2, 0, 1, 5, 3, 4],
     [3, 5, 4, 0, 2, 1], [4, 3, 5, 1, 0, 2], [5, 4, 3, 2, 1, 0],

@@ -10,7 +10,8 @@ from flexspline.fea.errors import SolidError
 from flexspline.fea.solid.tetwild import Background
 
 MOST_GRID_POINTS = 500_000
-"""Of a grid of the wanted edge length in the part's box: the mesher would take hours."""
+"""Most points of a grid of the wanted edge length in the part's box. Judgement: with more, the mesher takes
+hours."""
 
 
 @dataclass(frozen=True)

@@ -20,23 +20,25 @@ from flexspline.geometry.outline import Meridian, SAME_mm, SAME_rad, Segment
 from flexspline.geometry.shaft_shape import Slot
 
 LEAST_STEPS = 2
-"""About the axis, from the slot's middle to its side. Judgement: one element would span half of the floor."""
+"""Elements about the axis from the slot's middle to its side, at least. Judgement: a single one would span
+half of the floor."""
 STEP_OF_EDGE = 0.5
 """Step about the axis beside the slot, on the floor's corner, over the grading's largest edge: with that the
 slot's corners and the patch edges hold alike shares of the error on the example's shaft."""
 STEP_GROWTH = 1.6
-"""Of one step about the axis to the next, away from the slot's side. Judgement: neighbours of more than twice
-the length make flat elements."""
+"""Ratio of one step about the axis to the one before, away from the slot's side. Judgement: neighbours with a
+larger ratio make flat elements."""
 LARGEST_KEYED_STEP = radians(20)
-"""Far from the slot, where the shaft is in plain torsion: 15° and 20° differ by 6e-5 of the example's K,
-and parabolas of 20° lose 2e-5 of a circle's area."""
+"""[rad] Largest step far from the slot, where the shaft is in plain torsion. Steps of 15° and 20° change the
+example's K by 6e-5; parabolas of 20° lose 2e-5 of a circle's area."""
 NEAR_RATIO, FAR_RATIO, GROWTH_RATIO = 0.3, 1.75, 1.6
 """Of the grading's values for the meridian: the revolved mesh repeats each triangle some 12 times, so their
 number counts, and short edges at singular points alone cost few. The example's shaft: K ± 0.30 % by 15 900
 elements; 0.2 and 1.5 give ± 0.15 % by 21 300; the grading as it is 0.6 % by 40 000. With 2.0 for the second a
 check refuses the mesh of a shaft with a short, deep slot."""
 BLOCK_EDGE_POINTS = 24
-"""Along each of the block's edges, where the mesh is fine: closer than any edge there."""
+"""Points along each of the block's edges, near which the mesh is fine. They are closer to each other than any
+mesh edge there is long."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class SlottedTube:
         )
 
     def side(self, angles: np.ndarray) -> float:
-        """Which of the mesh's angles [rad] goes onto the slot's side: the nearest, but not 0."""
+        """The angle of the mesh [rad] that is moved onto the slot's side: the nearest one except 0."""
         others = angles[angles > SAME_rad]
         return float(others[np.abs(others - self.angle).argmin()])
 

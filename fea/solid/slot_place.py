@@ -10,12 +10,14 @@ from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 
 LEAST_RIM = 0.1
-"""Of the slot's depth: less material between the floor's corner and the outer wall is left to the mesher,
-since the block's elements there are as thin."""
+"""Least material between the floor's corner and the outer wall, as a share of the slot's depth. The block's
+elements there are as thin as it; shafts with less are left to the mesher."""
 FADING = 1.0
-"""Length over which the bending dies out, of the largest change of a radius: a slope of 45° in the mesh."""
+"""Length over which the bending fades out, over the largest change of a radius: a slope of 45° in the
+mesh."""
 LEAST_FADING = 0.5
-"""Of that length: where a step of the shaft leaves less, elements would be bent too far."""
+"""Least share of that length that a step of the shaft may leave. With less, elements would be bent too far.
+Judgement."""
 
 
 def block_of(part: Part, low: float) -> SlottedTube | None:

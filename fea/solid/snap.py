@@ -16,9 +16,11 @@ distance, so 40 reach rounding."""
 AGREEMENT_mm = 1e-8
 """[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
 FLATTENED_TETRAHEDRON = 0.1
-"""Share of its volume: a tetrahedron that keeps less is a sliver, whose curved copy can turn inside out."""
+"""Share of its volume that a tetrahedron must keep. If it keeps less, it is a sliver, whose curved copy can
+turn inside out."""
 MOST_PASSES = 10
-"""Each takes back the nodes of what the one before flattened; a mesh that is not done then is refused."""
+"""Rounds at most. Each undoes the moves of nodes whose tetrahedra the round before flattened. A mesh with
+flat ones left is refused."""
 SETTLED_mm = 1e-6
 """[mm] Nearer than this to a surface is on it: a nanometre, where the smallest length of a design is 1 µm."""
 

@@ -1,4 +1,4 @@
-"""What a load case of a solid model gives: a field, with K or with what cuts change of K."""
+"""Results of a solid model's load case: a field, with K or with the change of K by cuts."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A solid mesh as a scikit-fem space: quadratic, with its patches as named boundaries.
 
 `TetMesh` numbers middle nodes as its maker did (an unfolded sector copy by copy, a test's brick by bricks),
-scikit-fem by its own edges. Here, and nowhere else, one is turned into the other.
+scikit-fem by its own edges. Only this module converts one into the other.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ class SolidSpace:
 
     @property
     def volumes(self) -> np.ndarray:
-        """Of the elements (m,) mm³, curved as they are."""
+        """Volumes of the curved elements (m,) [mm³]."""
         points, weights = tet_rule(4)
         curved = self.curved
         return determinants(curved.doflocs.T, curved.dofs.element_dofs.T, points) @ weights
 
     def areas(self, patch: str) -> np.ndarray:
-        """Of a patch's facets (k,) mm², curved as they are; none where the part has no such patch."""
+        """Areas of a patch's curved facets (k,) [mm²]; empty if the part has no such patch."""
         points, weights = get_quadrature(RefTri, 4)
         facets = (self.curved.boundaries or {}).get(patch, np.empty(0, int))
         return np.asarray(self.curved.mapping().detDG(points, find=facets) @ weights)

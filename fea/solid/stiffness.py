@@ -36,25 +36,26 @@ FinerByError = Callable[[TetMesh, np.ndarray, float], TetMesh | None]
 """A mesh made finer where its elements' errors (m,) are, by the bounds' half-width over the tolerance; None
 where a specification tells the next one."""
 MAX_LEVELS = 5
-"""Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
-their edges go to as little as 1/256."""
+"""Most meshes: four refinements. Far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th
+power); at them the edges shrink to 1/256 at least."""
 MESH_LIMIT = 2e-3
-"""Of K by all of the field, which is above K of its mesh, not of the part: where edges of the surface are
-straight, a mesh has up to 1e-3 less material (`mesh_checks.SIZE_TOLERANCE`), where it counts twice."""
+"""Relative doubt of K by the whole field. This K is an upper bound for the mesh, not for the part: straight
+edges of the surface can take 1e-3 of the material (`mesh_checks.SIZE_TOLERANCE`) at places where it counts
+twice."""
 NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
 length there, so that is refined by as much as is still missing, within this range. Around them and
 far away the error falls with the fourth power of growth and length: both take the second factor."""
 MILDER_STEPS = (0.4, NEAR_STEP[1])
-"""Where there is no time for the wanted step: a shaft meshed by fTetWild, 0.1 % asked, was left at ± 1.8 % by
-its first mesh, 5 of 30 s later, where ± 0.8 % could be had."""
+"""Steps that are tried if there is no time for the wanted one. Without them a shaft meshed by fTetWild (0.1 %
+asked) stayed at ± 1.8 % of its first mesh after 5 of 30 s; ± 0.8 % was possible."""
 NEXT_TIME_RATIO = 2.0
 """Time of the next mesh and its solution over that of the last where the singular edges' step is the longest:
 it has about twice the elements; a shorter step takes so much more. fTetWild took 12 s for 14 766 elements of
 a cup, and was not done in 45 s with the shortest step."""
 AIMED_SHARE = 0.9
-"""Share of the tolerance that the next mesh aims at: it mostly gives more, since the usual factor of a first
-mesh is a cautious one. With 0.7 and 0.95 as many of 49 random shafts met the tolerance."""
+"""Share of the tolerance that the next mesh aims at. Mostly it does better, since the usual factor of a first
+mesh is cautious. With 0.7 and with 0.95 as many of 49 random shafts met the tolerance."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def solid_stiffness(
     """
     found = _SolidTorsion(meshes, field, tolerance, progress, deadline)
     mesh = found.mesh(meshes.first)
-    # what is meshed is solved, however late; `finer` then ends it
+    # a mesh that exists is solved, however late; `finer` then ends the loop
     late = deadline.elapsed() >= deadline.limit_s
     shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
     if shortfall and len(found.meshes) < MAX_LEVELS:
@@ -139,7 +140,7 @@ class _SolidTorsion:
         if not self.meshes:
             self.estimate = _of(self._field, mesh)
         with alone(mesh.elements):
-            # a turn that is waited for, or another program, is no work
+            # time spent waiting for a turn or for another program does not count
             began_s = self._deadline.working()
             self._add(Model.of(mesh, self._field.material))
             self._last_s += self._deadline.working() - began_s
@@ -147,7 +148,7 @@ class _SolidTorsion:
         self._progress(f"{mesh.elements} elements, K ± {percent(self.half)}")
 
     def _add(self, model: Model) -> None:
-        """Where this raises, the meshes before still stand."""
+        """If this raises, the results of the meshes before stay."""
         try:
             found = self._field.solve(model)
             estimate = self.estimate.with_mesh(found)
@@ -204,14 +205,15 @@ class _SolidTorsion:
 
 
 def _of(field: TorsionSolver, first: TetMesh) -> ScaledEstimate:
-    """Of no mesh yet; `first` is the one that comes."""
+    """An estimate without a mesh; `first` is the mesh to come."""
     return ScaledEstimate(field.scales.before_two(first), field.scales.believed)
 
 
 def near_step(tolerance: float, half: float) -> float:
     """Next over last edge length at the singular edges, for bounds ± `half` where `tolerance` is wanted.
 
-    Three digits: threads add in another order, and the rounding of `half` must not ask for another mesh.
+    Rounded to three digits: threads add in varying order, and the rounding of `half` must not change the
+    mesh.
     """
     return round(float(np.clip(AIMED_SHARE * tolerance / half, *NEAR_STEP)), 3)
 

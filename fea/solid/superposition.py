@@ -47,9 +47,10 @@ from flexspline.geometry.shaft_shape import Slot
 from flexspline.geometry.surfaces import ON_SURFACE_MM, Swept, part_surfaces
 
 WALL_DEGREE = 8
-"""Of quadrature on the walls: K of six hats and shafts by degree 6 and 12 differ by 2e-6."""
+"""Degree of the quadrature on the walls. K of six hats and shafts by degrees 6 and 12 differs by 2e-6."""
 IN_CUT = 1e-3
-"""Of a hole's radius or half a keyway's width: how far beyond it a facet of its wall may be, by rounding."""
+"""How far beyond a cut a facet of its wall may lie by rounding, as a share of the hole's radius or half the
+keyway's width."""
 
 
 @dataclass(frozen=True)

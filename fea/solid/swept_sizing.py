@@ -7,25 +7,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
+from flexspline.fea.axisymmetric.bisection import refined_while
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.errors import TooManyElementsError
 from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, HoledColumn
 from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
 
 PLAN_EDGE = 1.2
-"""Largest edge in the plan beside a hole, in hole radii: five go around it at least."""
-BISECTION_ROUNDS = 60
-"""A round bisects what is too long; 28 parts of random designs took 7 at most."""
+"""Largest edge in the plan beside a hole, in hole radii. At least five edges then go around the hole."""
 MOST_ELEMENTS = 500_000
-"""2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
+"""Most elements of a mesh: 2 million unknowns and 16 GB. Only parts of extreme proportions need more; they
+are refused before the mesh is built."""
 
 
 @dataclass(frozen=True)
 class Finer:
-    """What a load that varies about the axis asks of a mesh, beyond the grading.
+    """Requirements on a mesh beyond the grading, by a load that varies about the axis.
 
     Attributes
     ----------
@@ -86,17 +85,15 @@ def plan_mesh(
 
 def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:
     """No edge longer than `wanted` at its triangle's centre."""
-    for _ in range(BISECTION_ROUNDS):
-        corner = mesh.points[mesh.triangles]
-        longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
-        large = longest > wanted(corner.mean(axis=1))
-        if not large.any():
-            return mesh
-        refuse_beyond_memory(len(mesh.triangles))  # before it has them all
-        mesh = refined(mesh, large)
-    raise MeshQualityError(
-        f"{int(large.sum())} triangles of the meridian cannot be made fine enough"
-    )
+
+    def too_long(mesh: MeridianMesh) -> np.ndarray:
+        centres = mesh.points[mesh.triangles].mean(axis=1)
+        long = mesh.longest_edges() > wanted(centres)
+        if long.any():
+            refuse_beyond_memory(mesh.elements)  # before it has them all
+        return np.asarray(long)
+
+    return refined_while(mesh, too_long)
 
 
 def critical_points(outline: Meridian) -> np.ndarray:

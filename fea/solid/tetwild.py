@@ -23,7 +23,8 @@ from flexspline.fea.errors import MesherError, MesherTimeError
 STOP_ENERGY = 10.0
 """fTetWild's own. AMIPS energy, of which a regular tetrahedron has 3."""
 MESHER_SECONDS = 300.0
-"""Ten times a whole run of the six-hole cup with fTetWild (30 s): what takes longer may never end."""
+"""[s] Ten times a whole run of the six-hole cup with fTetWild (30 s). A mesher that takes longer may never
+end."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,8 @@ def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
 
 
 GRACE_S = 30.0
-"""How long beyond the time limit a child goes on whose parent did not end it."""
+"""[s] How long a child runs beyond the time limit if its parent did not end it. Judgement: only a killed
+parent does not."""
 
 
 def mesh_in_child(given: str, made: str, parent: str) -> None:

@@ -27,11 +27,13 @@ from flexspline.fea.solid.superposition import WholeTurned
 from flexspline.fea.types import NMM_PER_NM, Elastic
 
 LEAST_LEFT = 0.1
-"""Of K without cuts: less is the small difference of two large numbers."""
+"""Least share of K without cuts that must be left. Less would be a small difference of two large numbers.
+Judgement."""
 
 
 class CorrectionError(SolidError):
-    """What the cuts change cannot be told, or says too little of K; all of the field can be solved."""
+    """The change by the cuts cannot be computed, or is nearly all of K. The whole field can be solved
+    instead."""
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,13 @@ from flexspline.fea.types import TetMesh
 EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
 """Corners at the ends of each middle node 4 to 9."""
 MOST_STEPS = 1000
-"""22 to 93 were measured on cups from 0.1 to 1.1 million unknowns, to ‖r‖/‖f‖ of 1e-10; a thin free ring
-takes the most."""
+"""Most steps. Cups of 0.1 to 1.1 million unknowns took 22 to 93 to ‖r‖/‖f‖ of 1e-10; a thin free ring takes
+the most."""
 DEGREE, SMOOTHED_RATIO = 3, 10.0
 """Smoothing: products with K per pass, and the part of the spectrum it covers, largest/SMOOTHED_RATIO up."""
 SPECTRUM_STEPS, SPECTRUM_SAFETY = 20, 1.1
-"""The largest eigenvalue is seen from below; underestimated by a tenth the smoother would amplify it."""
+"""Factor on the estimate of the largest eigenvalue, which is a lower bound. If it were a tenth too small, the
+smoother would amplify that mode."""
 
 
 def corner_interpolation(mesh: TetMesh, frames: NodeFrames) -> csr_matrix:
@@ -63,7 +64,7 @@ class TwoLevel:
         self, matrix: bsr_matrix, free: np.ndarray, interpolation: csr_matrix, exact: Back
     ) -> None:
         self._double = BlockProduct(matrix)
-        # conjugate gradients bear a preconditioner's rounding, and its products with K are most of the time
+        # conjugate gradients tolerate the preconditioner's rounding; most of the time goes into its products
         blocks = matrix.astype(np.float32)
         self._single = BlockProduct(blocks)
         self._down = interpolation.astype(np.float32)

@@ -15,8 +15,8 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 Parity = Literal["symmetric", "antisymmetric"]
-"""What a reflection does to a displacement: torsion, even or at the lobes, is antisymmetric, the wave
-generator's ellipse symmetric."""
+"""How a displacement changes under reflection: torsion, uniform or at the lobes, is antisymmetric; the wave
+generator's ellipse is symmetric."""
 MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 """Ten nodes with corners 1 and 2 exchanged: a reflection turns the element inside out."""
 MIRRORED_FACET = [0, 2, 1, 5, 4, 3]

@@ -34,7 +34,7 @@ from flexspline.geometry.tooth import ToothCell
 DEGREE = 6
 """Of quadrature: exact for r·|∇u|² and more; 1/r varies little over an element."""
 LARGEST_RESIDUAL = 1e-8
-"""Of ‖Ku − f‖/‖f‖: far below the error of the mesh."""
+"""Largest ‖Ku − f‖/‖f‖: far below the error of the mesh."""
 
 
 def _around(f: Any, w: Any) -> Any:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
+from flexspline.fea.axisymmetric.bisection import refined_while
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.refinement import refine
 from flexspline.fea.toothed_ring import plain
@@ -20,8 +20,9 @@ GRADING = 3.3
 """At the root's notch edges shrink with this power of the others: the energy that a corner of 250°
 loses falls with the edge there to the power 1.2, quadratic elements elsewhere with the fourth."""
 LARGEST_CHANGE = 1e-3
-"""What is accepted where the next mesh would be too large: thin rims under wide teeth, where every corner
-counts. A tenth of a percent of the thickness is below what anybody can make."""
+"""Largest relative change that is accepted if the next mesh would be too large. It happens with thin rims
+under wide teeth, where every corner counts. A tenth of a percent of the thickness is below any tolerance of
+manufacture."""
 MOST_TRIANGLES = 100_000
 """Some 15 s of one core; the next mesh has four times as many and takes as many minutes."""
 
@@ -121,10 +122,9 @@ def _thicknesses(model: CellModel, nu: float) -> tuple[float, float, float]:
 def _finer(mesh: MeridianMesh, cell: ToothCell, size: float, at_notch: float) -> MeridianMesh:
     """No edge longer than `size`, nor than `at_notch` on triangles that touch the root's notch."""
     notch = np.linalg.norm(mesh.points - np.array(cell.root_corner), axis=1).argmin()
-    while True:
-        longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+
+    def too_long(mesh: MeridianMesh) -> np.ndarray:
         touching = (mesh.triangles == notch).any(axis=1)
-        long = longest > np.where(touching, at_notch, size)
-        if not long.any():
-            return mesh
-        mesh = refined(mesh, long)
+        return np.asarray(mesh.longest_edges() > np.where(touching, at_notch, size))
+
+    return refined_while(mesh, too_long)

@@ -1,4 +1,4 @@
-"""Sizes that no gear has, and their words: files are refused with them, and an error says its own reason."""
+"""Sizes that no gear has, and the messages that refuse files with them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Literal, assert_never
 from flexspline.pipeline.diagnosis.structure import FarSize, FarSlope, UnitSuspect
 
 SMALLEST = 1e-6
-"""Below it a ratio is no number of its own: what makes it so small is a channel without a signal."""
+"""Smallest ratio that is printed as a number. A smaller one comes from a channel without a signal.
+Judgement."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ Absurd = FarTwist | FarSlope | FarReading | FallingAngle | Still
 def absurd_words(absurd: Absurd, given: Collection[str] = ()) -> str:
     """Why a file is refused, as a question.
 
-    `given`: the stiffnesses that a person stated, such as `--Kb 31.3`: these are doubted too, but where a
-    sign or a reading that never changes is asked for.
+    `given`: the stiffnesses that a person stated, such as `--Kb 31.3`. The question doubts these too, except
+    if it concerns a sign or a reading that never changes.
     """
     match absurd:
         case Still():
@@ -76,7 +77,7 @@ def absurd_words(absurd: Absurd, given: Collection[str] = ()) -> str:
 
 
 def slope_words(slope: FarSlope) -> str:
-    """How much stiffer or softer the gear would be, and what may be wrong with the reading, as a question."""
+    """Asks what may be wrong with the reading, and says how much stiffer or softer the gear would be."""
     ratio = slope.ratio
     if ratio <= 0:
         return "the angle does not follow the torque" + _asked(slope)

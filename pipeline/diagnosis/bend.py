@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 NUMERICAL_SHARE = 0.005
-"""Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
+"""Share of the wind-up: the most by which the number of harmonics, places and stations changes K
+(docs/whole-gear.md)."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
 FAR_DEVIATIONS = 3.0
-"""Stated deviations: one calibration of a right simulation in 370 lies further off."""
+"""Stated standard deviations. Of a right simulation, one calibration in 370 lies further off."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What the extended model has beside its causes, common to all units.
+    """Calibration of the extended model beside its causes, common to all units.
 
     Attributes
     ----------
@@ -34,7 +34,8 @@ class Calibration:
     compliance: Estimate | None = None
 
     def far_off(self, prediction: Prediction, beyond: float = FAR_DEVIATIONS) -> tuple[FarOff, ...]:
-        """What lies more than so many of its stated deviations from the simulation."""
+        """The calibrated quantities that lie more than so many of their stated deviations from the
+        simulation."""
         measured = [("gap", self.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)]
         if self.compliance is not None:
             stated = prediction.compliance, prediction.compliance_std

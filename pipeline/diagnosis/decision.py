@@ -37,7 +37,7 @@ from flexspline.pipeline.diagnosis.outcome import (
 )
 
 RIVAL_EVIDENCE = 4.0
-"""Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
+"""[nats] (docs/contract.md) Odds of 55 to 1. A cause whose evidence is less far behind is a rival."""
 RIVAL_LIKELIHOOD = 6.0
 """Nats of log likelihood less ½ log n for each amplitude (half of Schwarz's BIC), docs/contract.md."""
 RIVAL_CHI_SQUARE = 6.0
@@ -50,9 +50,9 @@ By chance one right curve of a hundred is said to miss something."""
 EVEN_ODDS = 0.5
 """Probability at which a cause is as likely as not."""
 BESIDE_UNKNOWN = 2.0
-"""Times SIZE_KNOWN, a cause's size from none in its deviations beside an effect of no known cause: terms of
-no form fit that only roughly, and what they leave is no noise. Where a rig was bumped, 5 records of 14 had a
-rate dependence of 2.8 to 3.8 deviations that was not there."""
+"""Times SIZE_KNOWN that a cause's size must differ from none if an effect without a known cause is present.
+Free-form terms fit such an effect only roughly, and what they leave is not noise. Where a rig was bumped, 5
+records of 14 had a rate dependence of 2.8 to 3.8 deviations that was not there."""
 UNEXPLAINED_SHARE = 0.5
 """Of the named causes' rms, docs/contract.md: with more left unexplained the verdict is `unknown`."""
 
@@ -107,7 +107,7 @@ CONSISTENT = Decision("consistent")
 def overruled(
     by: Unexplained, causes: Iterable[NamedCause] = (), beside: Iterable[Unexplained] = ()
 ) -> Decision:
-    """What is decided where the data refute an explanation: `unknown`, with what refutes it first."""
+    """The decision if the data refute an explanation: `unknown`, with what refutes it first."""
     return Decision("unknown", tuple(causes), (by, *beside))
 
 
@@ -219,7 +219,7 @@ def decided(
     found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
     left = tuple(unexplained)
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
-        # beside what has no name a mere suspicion is none
+        # a suspicion does not count beside an effect without a name
         likely = (
             c for c in found if is_significant(c, BESIDE_UNKNOWN) and c.probability >= EVEN_ODDS
         )

@@ -1,4 +1,4 @@
-"""What was left out of a fit, to measure its error there, as facts without words."""
+"""Rows that were left out of a fit to measure its error there, as facts without words."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class LeftOut:
-    """Rows left out together, told by their values of a channel.
+    """Rows left out together, described by their values of a channel.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a diagnosis says; the same type for every kind of measurement."""
+"""Result of a diagnosis; the same type for every kind of measurement."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
 
 SIZE_KNOWN = 2.0
-"""Standard deviations from no effect: a size nearer is compatible with none."""
+"""Standard deviations from no effect. A smaller size is compatible with none."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class NamedCause:
     magnitude_std: float
     unit: str
     evidence_nats: float
-    """By how much the record is better explained with it than with the best set without."""
+    """Evidence of the best set with it over the best set without it."""
     rms_arcsec: float
     own_units: tuple[str, ...] = ()
     """Units under test that alone show it; empty: all do."""
@@ -55,7 +55,7 @@ class NamedCause:
 
     @property
     def is_surplus(self) -> bool:
-        """Whether the simulation has too much of it, not too little: compliance that the gear lacks."""
+        """Whether the simulation has too much of it: compliance that the gear does not have."""
         return self.id == SERIES and self.magnitude < 0
 
     @property
@@ -156,7 +156,7 @@ class Doing:
 
 @dataclass(frozen=True)
 class NextMeasurement:
-    """The measurement that would settle what is open.
+    """The measurement that would answer the open question.
 
     Attributes
     ----------

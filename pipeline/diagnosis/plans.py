@@ -14,7 +14,8 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Doing
 
 FREE_ANGLE_RATIO = 1e4
-"""Times the largest predicted angle: a standard deviation that leaves a calibration to the data."""
+"""Standard deviation over the largest predicted angle: so wide that the data alone determine the
+calibration."""
 
 
 @dataclass(frozen=True)

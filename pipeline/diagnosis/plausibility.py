@@ -45,19 +45,21 @@ from flexspline.pipeline.diagnosis.sweep.twist_ratio import SweepSize, sweep_siz
 ABSURD_RATIO = 30.0
 """Times stiffer or softer than simulated, docs/contract.md, section 4."""
 LIKELY_RATIO = 3.0
-"""Times that readings in the likely unit may be off: a real gear's twist is within."""
+"""Factor by which readings in the likely unit may be off. A real gear's twist is within it. Judgement."""
 RESOLVED_RATIO = 10.0
-"""Times the rms off the line that a slope's twist must have: a curve through the gap is no slope."""
+"""Twist of a slope over the rms residual of its line, at least. A curve through the gap is not a slope."""
 POSITION_ERROR_arcsec = 120.0
 """Readings wander so far without torque: catalogues allow small wave gears 2 arcmin of position error."""
 NO_SIGNAL_SHARE = 1e-3
-"""Of the simulated twist: less is a channel without a signal as likely as a unit."""
+"""Share of the simulated twist. A smaller twist may come from a channel without a signal as well as from a
+wrong unit. Judgement."""
 AS_LIKELY_RATIO = 1.5
-"""Times further off than the best unit, and a unit is still asked for."""
+"""A unit is also suggested if its ratio is off by this factor more than the best unit's. Judgement."""
 LEAST_RATIO = 1e-12
-"""Ratios are cut here, for their logarithms."""
+"""Smallest ratio whose logarithm is taken."""
 OPPOSITE_SHARE = -1 / 3
-"""Of the simulated twist: no friction or drift turns it over."""
+"""Least twist in the wrong direction over the simulated twist. No friction or drift reverses so much.
+Judgement."""
 
 
 def refuse_absurd(
@@ -209,7 +211,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | No
     simulated = prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm)
     if not np.all(simulated > 0):
         return None
-    ratio = float(np.median((points.angle_plus_arcsec - points.angle_minus_arcsec) / simulated))
+    ratio = float(np.median(points.total_arcsec / simulated))
     if _beyond(abs(ratio)):
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)

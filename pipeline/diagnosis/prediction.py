@@ -1,4 +1,4 @@
-"""What the simulation says a record should show, and how far it may be off."""
+"""The record that the simulation predicts, and its uncertainty."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Prediction:
 
     @property
     def for_race(self) -> Prediction:
-        """What a race begins with: the line as simulated, the bend as measured."""
+        """Start of a race: the line as simulated, the bend as measured."""
         if self.measured_bend is None:
             return self
         return replace(self, bend=self.measured_bend, measured_bend=None, lost_bend=None)
@@ -65,7 +65,7 @@ class Prediction:
         return (high_Nm - low_Nm) * self.compliance + crossed * self.gap_arcsec
 
     def scale_arcsec(self, torque_Nm: float) -> float:
-        """Size of the predicted angle at a torque: a natural unit for effects of unknown size."""
+        """Size of the predicted angle at a torque: the unit for effects of unknown size."""
         return self.compliance * torque_Nm + self.gap_arcsec / 2
 
 

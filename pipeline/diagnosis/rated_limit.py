@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 WORTH_SHARE = 1.05
-"""Of the next smaller torque: rated torque is a torque of its own from there on."""
+"""Rated torque over the next smaller torque, from which rated torque is listed separately. Judgement."""
 FIGURES = 3
-"""Of a torque that a person is to set."""
+"""Significant figures of a torque that a person sets."""
 
 
 def within_rated(

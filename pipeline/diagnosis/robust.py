@@ -21,7 +21,7 @@ def rms(values: ArrayLike) -> float:
 
 
 def robust_std(deviations: ArrayLike) -> float:
-    """Standard deviation about zero of normal noise, in its unit, whatever a minority of the values is.
+    """Standard deviation about zero of normal noise, in its unit, independent of a minority of outliers.
 
     Examples
     --------

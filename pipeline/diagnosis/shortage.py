@@ -1,4 +1,5 @@
-"""Why a measurement says nothing, as facts; `results/diagnosis/shortage_words.py` puts them into words."""
+"""Why a measurement allows no verdict, as facts; `results/diagnosis/shortage_words.py` puts them into
+words."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ConstantTorque:
-    """Neither stiffness nor gap can be seen."""
+    """Neither stiffness nor gap can be determined."""
 
 
 @dataclass(frozen=True)

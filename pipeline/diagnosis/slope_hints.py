@@ -23,14 +23,14 @@ from flexspline.pipeline.diagnosis.structure import UnitSuspect
 from flexspline.pipeline.diagnosis.sweep.twist_ratio import SweepSize, sweep_size
 
 NEAR_FACTOR = 0.05
-"""Of a unit's factor, relative: Young's modulus and a solver's mesh are known to some 2 % each."""
+"""Relative distance from a unit's factor. Young's modulus and a solver's mesh are known to some 2 % each."""
 CHORD_NEAR = 0.3
 """The same of the twist with the gap in it, which is stated to 10 to 20 %."""
 AS_GEAR = 1.5
 """Times softer than flexspline and shaft from which a complete gear is as likely as a fault. At small torque
 its few teeth in mesh and its bearing yield twice what the two parts do (docs/whole-gear.md)."""
 DEVIATIONS = 3.0
-"""Of a named compliance's own, on either side: one in 370 lies beyond."""
+"""Standard deviations of a named compliance on either side; one in 370 lies beyond."""
 ANGLE_UNITS, TORQUE_UNITS = ("arcsec", "arcmin", "deg", "mrad", "rad"), ("Nm", "mNm", "Ncm", "kNm")
 """Units that rigs use; others are not guessed at."""
 TORQUES: Factors = {

@@ -1,4 +1,4 @@
-"""What a measurement shows that has no name, as facts: a kind and its numbers.
+"""Effects in a measurement that no cause explains, as facts: a kind and its numbers.
 
 `results/diagnosis/structure_words.py` puts them into words.
 """
@@ -39,7 +39,7 @@ FormKind = Literal[
     "half_step",
     "one_specimen",
 ]
-"""What structure over a channel may be like."""
+"""Forms of structure over a channel."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class UnnamedForm:
 
 @dataclass(frozen=True)
 class Trace:
-    """Something like a cause, by its id, too little to be named."""
+    """An effect like that of a cause, by its id, that is too small to be named."""
 
     cause: str
 
@@ -177,6 +177,6 @@ class DraggedCrossing:
 BrokenLimit = (
     Slip | FarSlope | NegativeGap | MissedLevel | BackwardLoop | LateAngle | DraggedCrossing
 )
-"""What no gear does, or no explanation may."""
+"""Findings that no gear can cause, or that no explanation may contain."""
 Structure = tuple[UnnamedForm, ...] | Trace | BrokenLimit
 """Several forms at once are of one channel."""

@@ -1,4 +1,4 @@
-"""A record without time: rows stand for seconds in the computation, and must not be called so."""
+"""A record without time: the computation uses rows as seconds, and results must say rows."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def over_rows(channel: str) -> str:
 
 
 def _next(after: NextMeasurement | None) -> NextMeasurement | None:
-    """What is still to be found; a measurement that tells named causes apart may need time."""
+    """The measurement for what is still unknown; one that distinguishes named causes may need time."""
     if after is None or after.aim != "find_structure":
         return after
     return replace(after, vary=over_rows(after.vary))

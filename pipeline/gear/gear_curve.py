@@ -53,8 +53,9 @@ from flexspline.pipeline.parts import AnalysisContext
 T1_SHARE, T2_SHARE = 0.15, 0.50
 """Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in sizes 14 to 25."""
 BELOW_T1 = (0.001, 0.005, 0.01, 0.015, 0.025, LOST_MOTION_SHARE, 0.05, 0.065, 0.09, 0.12)
-"""Of rated torque: teeth come into contact there, the curve bends, and the lost motion is read."""
+"""Torques over rated torque. Teeth come into contact there, the curve bends, and the lost motion is read."""
 BELOW_T2 = (T1_SHARE, 0.2, 0.25, 0.31, 0.37, 0.43)
+"""Torques over rated torque from T1 up to T2, the range of K2."""
 LOADING = (*BELOW_T1, *BELOW_T2, T2_SHARE, 0.58, 0.66, 0.74, 0.83, 0.91, 1.0)
 """Torques that are computed, of rated torque; a chord "from 0" begins at the first. Straight lines between
 them are off by less than 0.2 % of the wind-up on the gears tried: further teeth meet all along the curve."""

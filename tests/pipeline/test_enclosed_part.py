@@ -239,19 +239,3 @@ def test_a_cut_body_that_is_too_far_off_is_not_solved_finely(
     assert found.bounds_Nm_per_rad == pytest.approx(
         finest.bounds_Nm_per_rad, rel=FAR_BOUNDS_PCT / 100
     )
-
-
-def test_lift_off_of_bodies_far_apart_is_the_same_by_coarse_ratios(
-    suite_cache: Path, monkeypatch
-) -> None:
-    """A ratio known less well, as of bodies beyond FAR_HALF_WIDTHS, has wider bounds about the same K."""
-    part = model(WIDE.changed({"solver.tolerance_pct": 1.0}), suite_cache)
-    fine = load_cases.CASES["lobes_contact"].bodies(part)
-    monkeypatch.setattr(load_cases, "FAR_HALF_WIDTHS", 0.0)
-    monkeypatch.setattr(load_cases, "FAR_BOUNDS_PCT", 2.0)
-    coarse = load_cases.CASES["lobes_contact"].bodies(part)
-    assert coarse.cut.half_width > 2 * fine.cut.half_width
-    for a, b in ((coarse.cut, fine.cut), (coarse.whole, fine.whole)):
-        assert len(a.levels) <= len(b.levels)
-        assert a.lower_Nm_per_rad <= b.upper_Nm_per_rad
-        assert b.lower_Nm_per_rad <= a.upper_Nm_per_rad

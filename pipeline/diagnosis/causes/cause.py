@@ -22,7 +22,8 @@ Effect = Literal["angle", "gap", "compliance"]
 
 @dataclass(frozen=True)
 class FitContext:
-    """The prediction, and what the record spans: fixes grids of shapes and the size of effects.
+    """The prediction and the ranges of the record. They determine the grids of shapes and the sizes of
+    effects.
 
     `compliance` [arcsec per N·m] and `gap_arcsec` are what was measured, all linear terms together;
     as predicted until something is fitted.
@@ -86,20 +87,21 @@ class Cause(ABC):
     unit: ClassVar[str]
     """Of the magnitude."""
     ratio: ClassVar[str] = ""
-    """Of a magnitude in % or 1: which ratio it is (docs/contract.md)."""
+    """Which ratio the magnitude is, if its unit is % or 1 (docs/contract.md)."""
     factor: ClassVar[str] = ""
-    """Of a magnitude in 1: what a reader needs after the number, as "times as …"."""
+    """Words after the number, such as "times as …", if the magnitude's unit is 1."""
     none: ClassVar[float] = 0.0
     """The magnitude of no effect."""
     passes_none: ClassVar[bool] = True
-    """Whether the magnitude passes `none` where the effect turns round, so that its deviation tells it from
-    none; the amplitude of a wave is above none whatever its phase."""
+    """Whether the magnitude passes through `none` where the effect changes sign. Its standard deviation then
+    tells it from none. The amplitude of a wave is above none for every phase."""
     positive: ClassVar[bool] = False
     """Whether physics forbids negative amplitudes."""
     exact: ClassVar[bool] = False
     """Whether the columns are the cause's only shape, so that it leaves no misfit."""
     elastic: ClassVar[bool] = False
-    """Whether it changes the mean slope of angle over torque, which the calibrated compliance then is not."""
+    """Whether it changes the mean slope of angle over torque, so that the calibrated compliance is not this
+    slope."""
     shape_doubt: ClassVar[float] = 0.007
     """Share of the magnitude by which the shapes tried may miss a real gear's.
 
@@ -109,13 +111,13 @@ class Cause(ABC):
     This one is for a cause of which no such records have been made yet.
     """
     spread_share: ClassVar[float]
-    """Of `spread`: its share of the predicted twist, angle or compliance, where it is one."""
+    """`spread` as a share of the predicted twist, angle or compliance, if it is such a share."""
     per_torque: ClassVar[bool] = False
     """Whether amplitudes are in arcsec per N·m: `spread` is then a share of the predicted compliance."""
     needs_time: ClassVar[bool] = False
-    """Whether nothing can be said of it where time was not recorded."""
+    """Whether it cannot be identified without recorded time."""
     vary: ClassVar[str] = "torque_Nm"
-    """What to vary to see it, where the rivals' predictions do not decide: a channel, or torque_rate,
+    """What to vary to make it visible if the rivals' predictions do not decide: a channel, or torque_rate,
     torque_amplitude, hold."""
     shows_over: ClassVar[str] = "torque_Nm"
     """The channel over which a chart shows it best."""
@@ -126,31 +128,33 @@ class Cause(ABC):
     e^½ (`sweep/evidence/shape_tuning.py`): in a grid of them, neighbours need be no nearer than a factor
     of e."""
     made_of: ClassVar[frozenset[str]] = frozenset()
-    """Ids of other causes that all together can be this one: where they are found, it is asked for in the
+    """Ids of other causes that together can imitate this one. If they are found, this cause is tried in the
     place of all of them."""
     searched_apart: ClassVar[tuple[Shape, ...]] = ()
-    """Shapes, one of each set of parameters, that change what other causes see: not among `shapes`."""
+    """Shapes that change the history that other causes see, one for each set of parameters; they are not
+    among `shapes`."""
     reveals: ClassVar[str]
     """The measurement that shows this cause most plainly."""
 
     def title_at(self, magnitude: float) -> str:
-        """What a person reads where its sign changes what it is."""
+        """Title by the sign of the magnitude, if the sign changes the meaning."""
         return self.title
 
     @abstractmethod
     def shapes(self, rig: FitContext) -> list[Shape]:
-        """Shapes worth trying on a rig's record; none where it lacks the channel."""
+        """Shapes to try on a rig's record; none if the record lacks the channel."""
 
     def log_share(self, shape: Shape, count: int) -> float:
-        """Log of the share of its prior that one of `count` shapes has."""
+        """Log of the share of the cause's prior that one of `count` shapes has."""
         return -log(count)
 
     def stands_alone(self, shape: Shape) -> bool:
-        """Whether an element of this shape is all there is of the cause: no second one stands beside it."""
+        """Whether an element of this shape excludes a second element of the cause."""
         return False
 
     def plausible(self, elements: Sequence[Element], rig: FitContext) -> bool:
-        """Whether a real gear may have these on a record: asked of what would stand in for another cause."""
+        """Whether a real gear may have these elements on a record. It is checked if they would stand in for
+        another cause."""
         return True
 
     def possible(self, shape: Shape) -> bool:
@@ -158,7 +162,7 @@ class Cause(ABC):
         return True
 
     def kind(self, shape: Shape) -> tuple[float | str, ...]:
-        """What refining a shape leaves as it is: its fixed parameters."""
+        """The parameters of a shape that refinement does not change."""
         return tuple(v for k, v in sorted(shape.items()) if k not in self.tunable)
 
     def law(self, shape: Shape) -> tuple[float | str, ...]:
@@ -168,7 +172,7 @@ class Cause(ABC):
     def but_for_a_spring(self, shape: Shape, rig: FitContext) -> list[Shape]:
         """Shapes that differ from this one by twist in proportion to torque alone.
 
-        Beside a spring they fit a record equally, and make it another size.
+        Together with a spring they fit a record equally well, but give the spring another size.
         """
         return []
 
@@ -183,9 +187,9 @@ class Cause(ABC):
     def spread(self, shape: Shape, rig: FitContext) -> float:
         """Prior standard deviation of an amplitude: the size that such effects have in real gears.
 
-        Shares of the predicted twist or angle, by judgement; they need not be near. All of them halved
-        change one verdict of 34 made-up records (`tests/hidden`, seed 77: `ambiguous` becomes `named`),
-        doubled none. Left out, it is a share of the predicted compliance (`per_torque`) or angle.
+        Shares of the predicted twist or angle, by judgement; they need not be accurate. Half of all of them
+        changes one verdict of 34 made-up records (`tests/hidden`, seed 77: `ambiguous` becomes `named`),
+        twice all of them none. The default is a share of the predicted compliance (`per_torque`) or angle.
         """
         whole = rig.prediction.compliance if self.per_torque else rig.scale_arcsec
         return self.spread_share * whole
@@ -193,7 +197,7 @@ class Cause(ABC):
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """The magnitude (docs/contract.md) of all elements together, in `unit`.
 
-        Left out, it is the sum of their first amplitudes.
+        The default is the sum of their first amplitudes.
         """
         return sum(e.amplitudes[0] for e in elements)
 

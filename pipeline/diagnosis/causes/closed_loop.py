@@ -9,7 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 LOOP_ROWS = 201
-"""Of a branch from end to end: torques 1 % of the largest apart; odd, so that one is 0."""
+"""Rows of a branch from end to end. Torques are then 1 % of the largest apart. The number is odd, so that one
+torque is 0."""
 MIDDLE_ROW = LOOP_ROWS // 2
 """Row of such a branch with T = 0."""
 
@@ -17,7 +18,7 @@ MIDDLE_ROW = LOOP_ROWS // 2
 def loop_widths(angle: Callable[[History], np.ndarray], largest_Nm: float) -> np.ndarray:
     """(LOOP_ROWS,) unloading less loading angle, from −T to T, in the unit of `angle`.
 
-    Torque goes to and fro twice: in the second loop nothing is left of what was before the first.
+    Torque goes to and fro twice, because the first loop still depends on the state before it.
     """
     up = np.linspace(-largest_Nm, largest_Nm, LOOP_ROWS)
     found = angle(History.course(np.concatenate([up, up[::-1], up, up[::-1]])))

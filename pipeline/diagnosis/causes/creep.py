@@ -1,4 +1,4 @@
-"""Twist that goes on growing while torque is held."""
+"""Twist that continues to grow while torque is held."""
 
 from __future__ import annotations
 
@@ -18,26 +18,30 @@ from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_way
 CREEP = "creep"
 """This cause's id."""
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
-"""Twist as log t (0) or as t^n, 0.3 being near Andrade's t^⅓; 0 cannot be refined, the others are."""
+"""Exponents n of twist t^n; 0 stands for log t, and 0.3 is near Andrade's t^⅓. All but 0 are refined."""
 HOLD_DIVISORS = (300.0, 30.0, 5.0)
-"""Of a hold, the shortest retardation times tried: about decades, as each decade adds an equal twist."""
+"""Shortest retardation times that are tried, over the hold: about a decade apart, since each decade adds an
+equal twist."""
 ENDS_WITHIN = 1.0
-"""Of a hold, the longest retardation time tried of twist that comes to rest; refined from 0.4 on."""
+"""Longest retardation time that is tried for twist that comes to rest, over the hold; refined from 0.4 on."""
 ENDING_DIVISORS, ENDING_EXPONENT = (300.0, 30.0), 0.15
-"""The shortest times and the exponent tried of such: with both ends refined a small exponent is enough."""
+"""Shortest times and exponent that are tried for it. Both ends are refined, so a small exponent is enough."""
 SINGLE_TIMES = (0.15, 0.4, 1.0, 3.0)
-"""Of a hold: time constants of a single Kelvin element, less than a factor e apart."""
+"""Time constants of a single Kelvin element over the hold. They are about a factor e apart, which refinement
+bridges."""
 LONGER_THAN_LAG = 0.3
-"""Of a ramp: a shorter single element is a lag, which is `rate_dependence`."""
+"""Time constant over a ramp's time. A shorter single element is a lag, which is `rate_dependence`.
+Judgement."""
 STEEPEST = 0.8
 """Exponent: 1 is a steady flow, which grows like drift under constant torque."""
 LEAST_TIME_RATIO = 1.001
-"""Ratio of the two retardation times below which they are one, but for rounding."""
+"""Ratio of the two retardation times below which they are equal except for rounding."""
 LEAST_LONGEST = 0.4
-"""Of a hold, the longest retardation time when refined: an element that is quicker has done 92 % of its twist
-when the hold ends, and is a lag. With 0.15 for spread ones a hidden lag of 30 was creep."""
+"""Limit of the longest retardation time over the hold in refinement. A quicker element has done 92 % of its
+twist when the hold ends, and counts as a lag. With 0.15 for spread elements, one of 30 hidden lags was named
+creep."""
 SHORTEST_HOLD = 0.06
-"""Of a ramp from zero: what stands still for less is a turn, not a hold."""
+"""Shortest hold, over the time of a ramp from zero. A shorter rest is a turn of the torque. Judgement."""
 PER_DECADE = 3
 """Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
 DECADE_ROWS = np.array([0.1, 1.0])

@@ -24,8 +24,8 @@ rounded over a fifth of the torque 0.413; T², which is no two stiffnesses, has 
 class DirectionAsymmetry(Cause):
     """Compliance c ± a for torque of either sign: twist a·|T| with a [arcsec per N·m].
 
-    At the largest torque; between, the difference may grow a little slower or faster than torque
-    (`exponent`), or set in smoothly (`rounding_Nm`).
+    a holds at the largest torque. Below it, the difference may grow a little slower or faster than torque
+    (`exponent`), or begin smoothly (`rounding_Nm`).
     """
 
     id = ASYMMETRY

@@ -48,7 +48,8 @@ LEAST_GROWTH, MOST_GROWTH = 0.5, 3.0
 MOST_BENT = 2.0
 """Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
 DEADBAND = 0.001
-"""Reversals of torque below this share of the largest (or twice its noise) are noise."""
+"""Reversals of torque below this share of the largest torque, or below twice its noise, count as noise.
+Judgement."""
 VARIANTS = (
     (SINGLE, 0, 1, 0), (SINGLE, 0, 0, 0), (EVEN, 0, 1, 0), (EVEN, 0, 0, 0), (SINGLE, 1, 1, 0),
     (EXPONENTIAL, 0, 1, 0), (EXPONENTIAL, 0, 0, 0), (SINGLE, 0, 1, -1), (EVEN, 0, 1, -1),
@@ -221,12 +222,13 @@ class FrictionHysteresis(Cause):
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """Full width at T = 0 of the closed loop at the largest amplitude.
 
-        Of torque carried ahead of the teeth it is what elasticity makes of it.
+        For friction ahead of the teeth it is the width that elasticity makes of the torque.
         """
         return float(self._widths(elements, rig)[MIDDLE_ROW])
 
     def widest_arcsec(self, elements: Sequence[Element], rig: FitContext) -> float:
-        """Full width of that loop where it is widest: friction that grows with torque has none at T = 0."""
+        """Full width of that loop where it is widest. Friction that grows with torque has no width at T =
+        0."""
         return float(self._widths(elements, rig).max())
 
     def _widths(self, elements: Sequence[Element], rig: FitContext) -> np.ndarray:

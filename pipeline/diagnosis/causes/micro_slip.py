@@ -1,4 +1,4 @@
-"""Micro-slip: friction spread over thresholds without end, so that no loop measured ever saturates."""
+"""Micro-slip: friction with thresholds up to any torque, so that no measured loop saturates."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ POWERS = (1.3, 1.6, 2.0, 2.5, 3.2)
 """Tried: joints of bolts lose energy as T^(p + 1) = T^2.3 to T^3 (Segalman, J. Appl. Mech. 72, 752 (2005));
 a spread of thresholds that is even between two values has more."""
 LEAST_POWER, MOST_POWER = 1.3, 4.0
-"""The least of bolted joints: towards 1 twist is in proportion to torque, without a loop, and a spring in
-series passes for friction. Above 4 it all lies in the last fifth of torque."""
+"""Limits of the exponent in refinement. The lower is the least of bolted joints: near 1, twist is
+proportional to torque without a loop, and a spring in series would pass for friction. Above 4 all of the loop
+lies in the last fifth of torque."""
 INSIDE, OUTSIDE, THRESHOLD_RATIO = 24, 10, 4.0
 """Elements with thresholds up to the largest torque, and beyond it up to `THRESHOLD_RATIO` times that, for
 predictions. The loop's width at the largest torque is then good to 0.5 %."""

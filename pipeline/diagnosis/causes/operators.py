@@ -16,8 +16,8 @@ from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
 
 LEAST_TO_COME = 1e-12
-"""Of friction's largest, or of a power of that share: what is still to come is never less, so that neither a
-power nor a root of it overflows."""
+"""Least share of the largest friction that is still to come, or of a power of that share. It keeps powers and
+roots from overflowing."""
 
 
 def stops(

@@ -11,18 +11,20 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, FitContext, Shap
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 USUAL = (1, 2, 4)
-"""Per turn: eccentricity, the two lobes, and their multiple."""
+"""Harmonics per turn: eccentricity, the two lobes, and twice their number."""
 HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), USUAL)
-"""Which of them come together."""
+"""Sets of these that are tried together."""
 OTHERS = ((3,), (5,), (6,))
-"""Per turn, each tried alone: what a ring of as many screws, or a seat that is not round, may give."""
+"""Harmonics per turn that are tried one at a time: a ring of as many screws, or a seat that is not round, may
+cause them."""
 MOST_SPANNED = 13
-"""Positions, at up to which a zero and the harmonics 1 to 6 fit anything; the others are not tried there."""
+"""A zero and the harmonics 1 to 6 fit any readings at this many positions, so the others are tried at more
+positions only."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
 VARIES = 0.1
-"""Of a unit amplitude: a harmonic that varies by less over the positions is a constant there."""
+"""A harmonic of unit amplitude that varies by less over the positions is a constant there. Judgement."""
 
 
 class PeriodicShapes:

@@ -26,7 +26,7 @@ class PositionStiffness(PeriodicShapes, Cause):
     unit = "%"
     per_torque = True
     spread_share = 0.15
-    """Teeth in mesh change by one in seven or fewer as the wave generator turns."""
+    """As the wave generator turns, the number of teeth in mesh changes by one in seven or less."""
     ratio = "amplitude of the compliance in % of its mean"
     shape_doubt = 0.003
     """One and two deviations cover 71 and 100 % of 7 sizes."""

@@ -21,7 +21,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 RATE = "rate_dependence"
 """This cause's id."""
 FASTER = 10.0
-"""Times slower and faster that shows a lag: it changes by a factor of 100 between the two, friction not."""
+"""Factors on the rate that show a lag. Between the two a lag changes by a factor of 100, friction does
+not."""
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp, where torque is held: a longer lag is creep, which shows in holds."""
 LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
@@ -45,7 +46,7 @@ class RateDependence(Cause):
     title = "rate dependence (twist that lags torque)"
     unit = "arcsec per N·m/s"
     spread_share = 0.15
-    """What lags at the record's typical rate is a part of the twist, or the loop is friction's."""
+    """At the record's typical rate the lag is a part of the twist; otherwise the loop comes from friction."""
     positive = True
     tunable = ("lag_s", "exponent")
     shape_doubt = 0.008

@@ -12,9 +12,9 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 DRIFT = "sensor_drift"
 """This cause's id."""
 SATURATION = (0.2, 0.5, 1.2)
-"""Settling times as shares of the record, refined."""
+"""Settling times over the record's duration; they are refined. Judgement: about a factor of 2.5 apart."""
 EXPONENTS = (1.0, 0.5, 1.6)
-"""Of time: steady, slowing as √t, quickening; refined."""
+"""Exponents of time: steady, slowing as √t, quickening; they are refined."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.35, 2.0
 """Of time, when refined: below, half of the drift is over in the first seventh of the record, as after a jump
 at its start; above, half of it comes in the last third, as before a jump at its end."""
@@ -34,7 +34,7 @@ class SensorDrift(Cause):
     title = "drift of the angle reading"
     unit = "arcsec/h"
     spread_share = 0.4
-    """A reading may drift by as much as the gear twists: nothing holds it."""
+    """A reading may drift by as much as the gear twists; nothing limits it."""
     tunable = ("exponent", "settling_s")
     shape_doubt = 0.017
     """One and two deviations cover 68 and 84 % of 19 sizes."""

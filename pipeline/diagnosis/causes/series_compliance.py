@@ -22,7 +22,7 @@ class SeriesCompliance(Cause):
     unit = "%"
     per_torque = True
     spread_share = 0.4
-    """A joint or a bearing left out yields nearly as much as what is simulated."""
+    """A joint or bearing that was left out may be nearly as compliant as the simulated parts."""
     ratio = "in % of the simulated compliance"
     exact = True
     elastic = True

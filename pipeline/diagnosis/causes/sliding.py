@@ -1,4 +1,5 @@
-"""Friction between the measured torque and the teeth: what it carries, and what is left for the teeth."""
+"""Friction between the measured torque and the teeth: the torque that it carries, and the rest at the
+teeth."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ from flexspline.pipeline.diagnosis.robust import rms
 def _held_still(history: History) -> History:
     """The history with each hold's torque at its mean.
 
-    The largest reading of a hold is its noise's, and a stuck bearing would remember it.
+    A hold's largest reading is due to noise, and a stuck bearing would remember it.
     """
     torque = history.torque_Nm.copy()
     for hold in holds(history):
@@ -33,9 +34,10 @@ ROWS_BESIDE_TURN, STRAIGHT_BESIDE_TURN = 5, 0.02
 """Rows of a way on one side of a turn; of the torque along it, its rms off a line beyond the noise. From the
 top of a sine on it is three times that."""
 CLEAR = 4.0
-"""Of the deadband, which is two deviations of the torque's noise: what a way must be longer than."""
+"""Shortest way over the deadband, which is two deviations of the torque's noise."""
 LEAST_STIFFNESS_RATIO = 1e-6
-"""A bearing that is softer against the gear carries nothing; by it Wright's ω is divided."""
+"""Least stiffness of the bearing over the gear's. A softer bearing carries nothing, and Wright's ω is divided
+by the ratio."""
 
 
 def carried_share(

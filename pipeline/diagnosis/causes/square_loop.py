@@ -1,4 +1,4 @@
-"""Friction that turns with the torque at once: a loop with square ends.
+"""Friction that reverses at once with the torque: a loop with square ends.
 
 Coulomb friction on a stiff part slips within a torque too small to be read, and a rig that reads torque and
 angle on either side of its own friction shows the same.

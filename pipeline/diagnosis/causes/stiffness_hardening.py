@@ -25,7 +25,7 @@ SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
 14 % of its bend at most (tanh; rational 5 %), and it is refined. Nearly twice as many change no verdict of 12
 made-up records (`tests/hidden`, seed 77, every third of 34; nothing held out)."""
 POWERS = (0.5, 0.6, 0.72)
-"""Of torque, below 1: the twist levels off; refined within LIMITS."""
+"""Exponents of torque. They are below 1, so the twist levels off; refined within LIMITS."""
 CUBIC_SHARES = (1.0, 5.0)
 """Of a spring T = k1·θ + k3·θ³ (Tuttle, Seering 1996): its cubic torque over its linear one at the largest
 twist; refined within LIMITS."""
@@ -40,7 +40,7 @@ BENDS_ON, LEVELLED_OFF = (LAWS["tanh"], LAWS["rational"]), 0.02
 """Laws that level off, but not at the largest torque; their slope there, over the chord's, from which that
 counts: less of a hardening of a quarter of the twist is half a percent of the stiffness."""
 ONLY_SOFTER = (FAR_OUT, AT_LARGEST)
-"""Where a wind-up only softens: at no torque does it take off any slope."""
+"""Where a wind-up only softens: it reduces the slope at no torque."""
 LIMITS = {
     0: (0.1, 0.78),
     1: (0.1, 0.7),
@@ -123,7 +123,7 @@ class StiffnessHardening(Cause):
         return (*HELD, AT_LARGEST) if bends_on else HELD
 
     def possible(self, shape: Shape) -> bool:
-        """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
+        """A law that is nearly linear, or very steep at zero, belongs to another cause."""
         low, high = LIMITS[int(shape["law"])]
         if not low <= shape["parameter"] <= high:
             return False

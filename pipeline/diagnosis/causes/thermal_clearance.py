@@ -20,16 +20,16 @@ LAGS = (0.02, 0.05, 0.12, 0.3)
 two and of the nearer one have 97 % in common or more. Nearly twice as many change no verdict of 12 made-up
 records (`tests/hidden`, seed 77, every third of 34; nothing held out)."""
 NO_LAG_SHARE = 0.5
-"""Prior odds that no lag is seen: even."""
+"""Prior probability that no lag is visible: even odds."""
 STAGES = "stages"
 """The parameter of a gear that warms through its housing: two lags of one time constant, one behind the
 other. Two unequal ones lie between that and a single one."""
 WARMER, COLDER = "warmer_K", "colder_K"
 """Parameters of a gear that is not settled when its record begins: how far from the sensor's temperature."""
 MOST_OFF = "most_off_K"
-"""The parameter beside them: how far at most."""
+"""Name of the parameter with the largest offset."""
 OFF_SHARE = 0.5
-"""Of the most, where tuning begins: it goes down to nothing and up to all of it."""
+"""Start of the tuning, as a share of the largest offset; it can reach 0 and the largest."""
 SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
 """How far a gear is off at most. Of what the air spans in the record, as it swung before it too: behind
 a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
@@ -50,7 +50,7 @@ class ThermalClearance(Cause):
     title = "clearance that changes with temperature"
     unit = "arcsec/K"
     spread_share = 0.08
-    """Of the angle in each kelvin: ten kelvins may open or close most of a gap."""
+    """Share of the angle per kelvin. Ten kelvins may open or close most of a gap."""
     tunable = ("lag_s", WARMER, COLDER)
     shape_doubt = 0.003
     """One and two deviations cover 70 and 92 % of 53 sizes; with 0.01 they covered 88 and 98 % of 41."""
@@ -76,25 +76,27 @@ class ThermalClearance(Cause):
         return [*plain, *lagging, *twice, *off]
 
     def log_share(self, shape: Shape, count: int) -> float:
-        """Whether a lag can be seen at all has even odds: in equal shares twenty lags were twenty to one."""
+        """A visible lag has even odds. With equal shares for all shapes, twenty lags would have odds of
+        twenty to one."""
         if count == 1:
             return 0.0
         return log(NO_LAG_SHARE if shape["lag_s"] == 0 else (1 - NO_LAG_SHARE) / (count - 1))
 
     def stands_alone(self, shape: Shape) -> bool:
-        """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
+        """A gear has one initial temperature offset. Two that cancel could form any curve in time, also that
+        of wear."""
         return MOST_OFF in shape
 
     def plausible(self, elements: Sequence[Element], rig: FitContext) -> bool:
-        """A gap that grows for want of a temperature that no sensor saw, or none saw change, must be one that
-        metals can make."""
+        """If no sensor recorded a change of temperature, the gap may only change by as much as metals
+        allow."""
         air = rig.history.temperature_C
         steady = air is not None and float(np.ptp(air)) < STEADY_AIR_K
         unseen = [e for e in elements if steady or MOST_OFF in e.shape]
         return all(abs(e.amplitudes[0]) <= MOST_PER_K for e in unseen)
 
     def possible(self, shape: Shape) -> bool:
-        """A lag as long as the record makes any temperature a constant, which is another cause."""
+        """A lag as long as the record makes any temperature nearly constant, which is another cause."""
         off = max(shape.get(WARMER, 0.0), shape.get(COLDER, 0.0))
         return shape["lag_s"] <= shape["longest_lag_s"] and off <= shape.get(MOST_OFF, 0.0)
 

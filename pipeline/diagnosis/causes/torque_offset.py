@@ -24,7 +24,7 @@ class TorqueOffset(Cause):
     title = "shifted torque reading"
     unit = "N·m"
     spread_share = 0.1
-    """Of the largest torque: a cell not set to zero."""
+    """Share of the largest torque: a torque cell that was not set to zero. Judgement."""
     shape_doubt = 0.0
     """It has one shape; the doubt of its place is `sweep/crossing/crossing_likelihood.py`'s: of 156 sizes one
     and two deviations cover 67 and 98 %."""

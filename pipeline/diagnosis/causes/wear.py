@@ -13,12 +13,13 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 WEAR = "wear"
 """This cause's id."""
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
-"""A factor of two apart, refined from there."""
+"""Run-in times in cycles, a factor of two apart; they are refined."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.3, 1.3
 """Of the cycle, when refined: below, half of the growth is over in the first tenth of the cycles; above, wear
 would quicken."""
 LEAST_RUN_IN_CYCLES = 0.5
-"""Below it 86 % of the growth is over after one cycle: a gap of another size from the second cycle on."""
+"""Shortest run-in in cycles. Below it 86 % of the growth is over after one cycle: the gap merely has another
+size from the second cycle on."""
 
 
 class Wear(Cause):

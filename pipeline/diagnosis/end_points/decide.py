@@ -1,4 +1,4 @@
-"""From hypotheses about end points to causes, rivals and what is left over."""
+"""From hypotheses about end points to causes, rivals and unexplained structure."""
 
 from __future__ import annotations
 

@@ -52,7 +52,8 @@ from flexspline.pipeline.diagnosis.plans import PlanSeparation
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
 MOST_RACE_ROWS = 1000
-"""Of the race: every unit is held against the envelope, but so many tell what all share."""
+"""Most rows of the race. Every unit is compared with the envelope, but this many rows are enough to find what
+the units share. Judgement."""
 
 
 def diagnose_end_points(

@@ -1,4 +1,4 @@
-"""From the evidence of end points to extended models, and what they are worth on units left out."""
+"""From the evidence of end points to extended models, and their error on units left out."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import rms
 
 FEWEST_UNITS = 3
-"""To hold out one and still see what is common."""
+"""Fewest units, so that one can be held out and two still show what is common."""
 
 
 def calibration_of(evidence: UnitEvidence, prediction: Prediction) -> Calibration:

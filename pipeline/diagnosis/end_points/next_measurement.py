@@ -24,7 +24,7 @@ PLANNED_ROWS = 64
 TIMES_OVER = PLANNED_ROWS // 2
 """The same two end points, in as many rows."""
 READING_ARCSEC = 1.0
-"""No reading is taken to be better than this when plans are compared."""
+"""[arcsec] Smallest standard deviation of a reading when plans are compared. Judgement."""
 
 
 def plans(torque_Nm: float, rated_Nm: float | None = None) -> list[MeasurementPlan]:

@@ -26,7 +26,7 @@ from flexspline.pipeline.diagnosis.end_points.regressors import (
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 
 SUSPECTS = 5
-"""Units that may have a cause of their own: those furthest from the prediction."""
+"""Units furthest from the prediction, each of which is tried for a cause of its own. Judgement."""
 CAUSE_PAIR_NATS = -2.0
 """Log prior odds of two causes against one, 1 to 7."""
 UNNAMED_CURVE_NATS = -2.0
@@ -37,11 +37,11 @@ UNNAMED = "?torque_Nm"
 SIMULATION_SCORE = 0.0
 """Nats of the hypothesis without a cause, from which all others count."""
 CONCAVE = {CLEARANCE, FRICTION, HARDENING}
-"""All rise steeply and level off with torque: of two at once, end points would fit the second to the
-first one's shape. A pair has at most one of them."""
+"""All of these rise steeply with torque and level off. With two at once, end points would fit the second to
+the shape of the first, so a pair has at most one of them."""
 FREE_SPREAD_RATIO = 100.0
-"""So many times wider a prior leaves an amplitude to the likelihood: it weighs a 10 000th of what it did. 30
-or 300 change nothing of 84 made-up sets (`evidence.CORRELATIONS`)."""
+"""Factor on the prior's width. It then has a 10 000th of its weight, so the likelihood determines the
+amplitude. 30 or 300 change nothing of 84 made-up sets (`evidence.CORRELATIONS`)."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What can move end points apart or sideways, in the few shapes that end points can show."""
+"""Causes that move end points apart or sideways, in the few shapes that end points can distinguish."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ the twist levels off, not how. They are not refined, so they reach further than 
 HELD = (0, 2)
 """Stiffness as simulated at full load, or near zero."""
 FRICTION_SHARES = (0.04, 0.3, 0.6)
-"""Thresholds as shares of the largest torque."""
+"""Thresholds over the largest torque. Judgement: end points cannot tell nearer ones apart."""
 SIDES = (-1.0, 1.0)
 """Torque raised to ±T leaves friction holding back; torque come down to ±T, holding forward."""
 

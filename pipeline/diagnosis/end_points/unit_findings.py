@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of an angle reading that a file may show [arcsec]: round steps of displays; finer count as none."""
 LARGEST_P_VALUE = 1 - 1e-15
-"""The last double but a few below 1, where the logarithm of 1 − p still is a number."""
+"""Largest probability p that is used: a few doubles below 1, so that the logarithm of 1 − p is finite."""
 
 
 def unit_deviations(
@@ -27,7 +27,7 @@ def unit_deviations(
     """Deviations of all rows, and the units' names in their order."""
     names = tuple(dict.fromkeys(points.unit))
     code = {name: i for i, name in enumerate(names)}
-    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    total = points.total_arcsec
     angles = np.concatenate([points.angle_plus_arcsec, points.angle_minus_arcsec])
     deviations = UnitDeviations(
         total - prediction.twist_arcsec(-points.torque_Nm, points.torque_Nm),
@@ -58,7 +58,7 @@ def unit_findings(
     """Every unit at the torque where it is furthest out."""
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
-    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    total = points.total_arcsec
     found = []
     for name, rows in zip(names, deviations.unit_rows, strict=True):
         p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]

@@ -7,19 +7,20 @@ from itertools import pairwise
 import numpy as np
 
 PAUSE = 1.5
-"""Of the clock's step, beyond which no row has the stamps between two: a logger paused."""
+"""Times the clock's step: a longer distance between two stamps means that the logger paused."""
 FEWEST_WHOLE, FEWEST_OF_STAMP = 2, 2.0
-"""Stamps, and rows in each on the average, that say at which distance a steady logger writes."""
+"""Fewest stamps, and fewest rows of a stamp on average, that show at which distance a steady logger
+writes."""
 STEADY = 1.0
-"""Rows by which equal distances may miss some stamps: more is a logger that is not steady."""
+"""Most rows by which equal distances may miss stamps. A logger that misses more is not steady."""
 
 
 def spread_stamps(time_s: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """(n,) times, in order within each unit; rows of one stamp lie evenly in the clock's step after it.
 
-    The step is the least by which the clock moves on. With all rows of a second at its begin, a ramp would
-    be stairs. Between two pauses of a steady logger all rows lie at one distance: 16.7 rows a second are not
-    16 and 17, and a stamp that a pause cuts off holds fewer.
+    The step is the least by which the clock moves on. If all rows of a second had its beginning as their
+    time, a ramp would become stairs. Between two pauses of a steady logger all rows lie at one distance: 16.7
+    rows a second are not 16 and 17, and a stamp that a pause cuts off holds fewer.
     """
     spread = time_s.astype(float)
     for u in np.unique(unit):

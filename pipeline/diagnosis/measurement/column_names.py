@@ -29,7 +29,7 @@ PLAIN = ("cycle",)
 DESIGN_KEY = re.compile(r"[a-z]\w*(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)+", re.ASCII)
 
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|(?<![^\s(\[_])[+\-−](?![^\s)\]_])|\+")
-"""Words, figures, and signs that stand alone: a hyphen inside a word is none."""
+"""Words, numbers, and signs that stand alone; a hyphen inside a word is not such a sign."""
 _BRACKETS = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|<([^>]*)>|\{([^}]*)\}")
 _SCALE = re.compile(r"[*×÷/=]\s*\d|\d[.,]\d|\d\s*[*×÷/=]|^\s*[-−–]")
 """A factor beside the quantity, or a sign before it: the readings are then not in the unit beside it."""

@@ -140,7 +140,7 @@ def _one(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> tuple[int, Col
 
 
 def _times(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> list[tuple[int, ColumnName]]:
-    """Numbers with a unit go before stamps of the same moments; a day belongs to its time of day."""
+    """Numbers with a unit are preferred to stamps of the same moments; a day belongs to its time of day."""
     timed = [r for r in rivals if r[1].unit]
     clocks = [r for r in rivals if not is_day(_first(grid, r[0]))]
     return timed or (clocks if len(clocks) == 1 == len(rivals) - 1 else rivals)

@@ -12,20 +12,21 @@ from flexspline.pipeline.diagnosis.measurement.ramps import ramp_rate, rates_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 SUDDEN = 0.3
-"""Of the ramps' rate, between two neighbouring stretches of a few rows: it is 1 at a hold's ends and 2 at
-a triangle's; at a sine's turn half of this, over a sixtieth of the cycle."""
+"""Change of rate at a corner between two neighbouring stretches of a few rows, over the ramps' rate. It is 1
+at a hold's ends and 2 at a triangle's; at a sine's turn it is half of this limit over a sixtieth of the
+cycle."""
 LONGEST_PARTS = 30
 """Of a cycle: from one such part to the next a sine changes its rate by 2π/30 = 0.21 of its fastest, below
 `SUDDEN`."""
 CORNER_SIGMAS = 4.5
-"""Deviations of a change by the torque's noise: one row of noise in 150 000 changes by more."""
+"""Standard deviations of a change by the torque's noise. Noise alone exceeds it in one row of 150 000."""
 MET_WIDTHS = 3
 """Times the rows of a rate, through which the ways beside a corner are laid. With 1 % of noise and 1500 rows
 a cycle they meet within two rows of the corner; ways of a rate's own rows meet up to 17 away."""
 ROWS_BESIDE_CORNER = 4
-"""Rows through which a straight way is laid on either side of a corner."""
+"""Fewest rows of a straight line on either side of a corner. Judgement: two degrees of freedom are left."""
 FEWEST_ROWS_OF_UNIT = 24
-"""Of fewer no corner is told from a bend."""
+"""Fewest rows of a unit. With fewer, a corner cannot be told from a bend. Judgement."""
 
 
 @dataclass(frozen=True)

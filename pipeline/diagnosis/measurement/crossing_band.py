@@ -1,4 +1,4 @@
-"""The torques about zero at which nobody knows on which side of the gap the teeth bear."""
+"""The torques about zero at which it is not known on which side of the gap the teeth bear."""
 
 from __future__ import annotations
 

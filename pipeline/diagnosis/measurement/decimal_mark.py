@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.number_text import (
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 CELL_CHARS = 40
-"""Letters of a cell in a message."""
+"""Most characters of a cell in a message."""
 
 
 def decimal_mark(

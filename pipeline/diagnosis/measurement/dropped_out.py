@@ -7,7 +7,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 
 FEWEST_CONSTANT_ROWS = 20
-"""Rows: readings with noise seldom agree in both channels twice running."""
+"""Fewest constant rows of a channel that dropped out. Readings with noise seldom agree in both channels even
+in two rows in succession. Judgement."""
 
 
 def constant_lines(sweep: Sweep) -> tuple[int, int] | None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 ONE_READING_ARCSEC = 1e-4
-"""Readings that differ by less are one, written after a conversion of units: steps of encoders are larger."""
+"""Readings that differ by less are equal: a conversion of units rounds them, and steps of encoders are
+larger."""
 ROUNDING_RATIO = 12.0
-"""A step's square over the variance of what is rounded to it."""
+"""A step's square over the variance of rounding to it."""
 OFF_A_STEP = 0.1
-"""Of a step: by chance a fifth of all differences are nearer to a whole number of steps."""
+"""Share of a step by which a difference may miss a whole number of steps. By chance a fifth of all
+differences are as near."""
 WHOLE_STEPS = 0.8
 """Share of neighbouring readings that many whole steps apart, above which steps are an encoder's: one may
 change its readings by hand or by an outlier."""

@@ -1,4 +1,4 @@
-"""What stands for 0 in a denominator where the numerator may be more than 0, far below what a rig resolves.
+"""Values that replace 0 in a denominator if the numerator may exceed 0; far below the resolution of a rig.
 
 Where both are 0 together, `ABOVE_ZERO` does.
 """

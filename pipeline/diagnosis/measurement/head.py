@@ -11,9 +11,10 @@ from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
 
 HEAD_LINES = 300
-"""Lines in which the head is looked for: programs write some 50 above it, one for each channel the most."""
+"""Lines among which the head is searched. Programs write up to some 50 lines above it, most of them one for
+each channel."""
 A_UNIT, SURE_NAME = 0.5, 1.0
-"""What a cell is worth as part of a head: a unit alone is half of a sure name."""
+"""Points of a cell as part of a head: a unit alone counts half as much as a certain name. Judgement."""
 OUR_NAME = A_UNIT + SURE_NAME
 """A name as this program writes it says both."""
 

@@ -11,14 +11,15 @@ from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
 
 FEWEST_READINGS = 20
-"""Of a unit: of fewer no rule is seen."""
+"""Fewest readings of a unit. With fewer, no regularity is visible. Judgement."""
 MOST_ROWS = 10
-"""With one reading: an angle that stays for longer is held by the rig."""
+"""Most rows with one reading. An angle that stays constant for longer is held by the rig. Judgement."""
 REGULAR_SHARE = 0.8
-"""Of the readings that stay as long as the typical one, within a row: two clocks are not in step."""
+"""Share of the readings that stay as long as the typical one, within one row, because two clocks are not
+synchronous."""
 FEWEST_STEPS = 3.0
-"""Of the encoder, from one reading to the next: of fewer, the encoder is coarse and the channel need not be
-slow."""
+"""Fewest encoder steps from one reading to the next. With fewer, the encoder is coarse and the channel need
+not be slow."""
 LEAST_PROGRESS = 0.5
 """Of the torque's way from one reading to the next, what it has gone while the first one stays, over what it
 would at an even pace: on a staircase it stays as the angle does."""
@@ -26,10 +27,8 @@ would at an even pace: on a staircase it stays as the angle does."""
 
 def held_rows(table: MeasuredTable) -> np.ndarray:
     """(n,) rows of a sweep whose angle is the one before, where its channel is slow; each unit by itself."""
-    names = np.array(table.labels.get("unit", ("",) * len(table)))
     held = np.zeros(len(table), bool)
-    for name in np.unique(names):
-        rows = np.flatnonzero(names == name)
+    for rows in table.unit_rows():
         held[rows] = _held(table.numbers["torque_Nm"][rows], table.numbers["angle_arcsec"][rows])
     return held
 

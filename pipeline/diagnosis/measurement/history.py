@@ -38,7 +38,7 @@ class History:
     memo: dict[tuple[Hashable, ...], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
-    """What was made of this history and is needed again (`once`); never part of its value."""
+    """Results computed from this history and needed again (`once`); not a part of its value."""
 
     @classmethod
     def course(cls, torque_Nm: np.ndarray) -> History:

@@ -15,8 +15,8 @@ LARGEST_CYCLE = 1_000_000
 """A cycle a second for eleven days; a larger number is a slipped column."""
 
 CYCLE_SHARE = 0.1
-"""Of the largest torque, five times the most that noise may be: a loop that reaches so far on both sides is a
-cycle, beside others ten times larger too."""
+"""Share of the largest torque: five times the largest noise. A loop that reaches so far on both sides is a
+cycle, even beside others ten times larger."""
 
 
 @dataclass(frozen=True)

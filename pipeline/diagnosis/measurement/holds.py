@@ -21,16 +21,17 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import DEADBAND_SIGM
 HOLD_RATE_SHARE = 0.08
 """A hold's torque moves at less than this share of the ramps' rate,"""
 BESIDE_ROWS = 5
-"""Rows just before or after a hold [1], besides those over which a rate is taken: a programme's ramp is
-at its full rate within them, a sine near its peak is not."""
+"""Rows just before or after a hold, besides those over which a rate is computed. A programme's ramp reaches
+its full rate within them, a sine near its peak does not."""
 HOLD_RANGE_SHARE = 0.04
-"""Over a whole hold torque changes by less than this share of the largest."""
+"""Over a whole hold, torque changes by less than this share of the largest torque. Judgement."""
 RANGE_SIGMAS = 6.0
 """Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
 SURE_SIGMAS = 3.0
-"""Deviations of a hold's own rate by noise, by which it must be slower than what moves."""
+"""Standard deviations, by noise, by which a hold's rate must be lower than the rate beside it."""
 AROUND_ROWS = 20
-"""Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
+"""Rows of the mean torque before and after a gap between two runs. The mean is known to a fifth of the
+noise."""
 
 
 @once
@@ -140,8 +141,8 @@ def _range_sigmas(count: int) -> float:
 def hold_s(history: History) -> float:
     """Typical length of a hold, 0 without any: half of the time in holds is spent in no longer ones.
 
-    Where torque rings, it stands still for a few rows between two swings: of such holds there are many, and
-    they take no time.
+    If torque rings, it stands still for a few rows between two swings. Such holds are many but take little
+    time.
     """
     if history.time_s is None:
         return 0.0

@@ -28,23 +28,25 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import (
 )
 
 CORNER_ROWS = 4
-"""Rows by which a hold's ends and the corners there may differ, both together."""
+"""Rows by which a hold's two ends together may differ from the corners there. Judgement."""
 SEEN_SIGMAS = 3.0
-"""Of the torque noise: a polynomial over a way that stands out of it by less is not the torque's."""
+"""Times the torque noise. A polynomial over a way that stands out by less does not come from the torque."""
 LONGEST_OF_CYCLE = 0.75
-"""Of a cycle: a way from one turn to the next is half of it, or a row more."""
+"""Longest way over a cycle. A way from one turn to the next is half of a cycle, or a row more."""
 MOST_DEGREE, TESTED = 11, 3
 """Half a cycle of a sine from peak to peak is told to 1e-8 of its height; and how many polynomials beyond the
 last must not stand out: of a way with a centre every second one is zero. Of a curve these are told too, as it
 may have a little of them; a straight way has none."""
 AT_CORNER = 3
-"""Rows by which a corner in noise may be misplaced: they do not count."""
+"""Rows by which noise may displace a corner. They are not used."""
 KNOWN_SHARE = 0.8
-"""Of the ways that must be known, where more are refused than by chance: a drive rounds all corners alike."""
+"""Share of the ways that must be known if more are refused than by chance. A drive rounds all corners
+alike."""
 BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
-"""What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
+"""The residual of so many rows shows a bend, not noise, if its mean is off by more of its standard
+deviations."""
 END_ROWS, END_SIGMAS = (3, 6, 12, 24), 2.5
-"""The same of the first and the last rows: a corner that the drive rounds."""
+"""The same for the first and the last rows, where the drive rounds a corner."""
 SHORTEST_WAY, ONE_STEP = 4, 0.7
 """Rows; and how much of what torque moves over fewer of them, noise and all, is a step if it lies between
 two."""
@@ -71,7 +73,7 @@ class KnownWay:
 
     @property
     def held(self) -> bool:
-        """Whether torque rests there."""
+        """Whether torque rests in these rows."""
         return self.doubt_Nm.shape[1] == 1
 
 

@@ -8,7 +8,8 @@ USUAL_QUANTILE, LOST_STEPS = 0.95, 4.0
 """Quantile of the steps of time from one row to the next, and how many times that others are missing between
 two rows: of steps at random, which are exponential, one in 160 000 is as long."""
 LOST_SHARE = 0.5
-"""Of the travel: where more of it lies between rows that are far apart, a logger writes what changes."""
+"""Share of the travel of torque. If more of it lies between rows that are far apart, the logger writes only
+changes."""
 
 
 def far_apart(t: np.ndarray, torque_Nm: np.ndarray, step: int) -> np.ndarray:

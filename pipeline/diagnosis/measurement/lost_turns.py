@@ -15,14 +15,14 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_
 from flexspline.pipeline.diagnosis.robust import rms
 
 ROWS_BESIDE_LOSS, FEWEST_ROWS_BESIDE_LOSS = 60, 8
-"""Of a straight way on either side, the nearest: most, and fewest."""
+"""Most and fewest rows of the straight way on either side, the nearest ones. Judgement."""
 STRAIGHT_BESIDE_LOSS = 0.01
 """Of the torque along it, what a straight way's rms may be off a line beyond twice its noise: that of a sine
 from its top over an eighth of the cycle is 0.06."""
 
 
 LARGEST_TORQUE_RATIO = 1.05
-"""Times the largest torque of its cycles that was read, which a turn does not pass."""
+"""Largest torque at a lost turn, over the largest torque that was read in its cycles. Judgement."""
 MOVED_RIG_STEPS, MOVED_RIG_SIGMAS = 2.0, 3.0
 """Usual steps of torque, and deviations of what two ways say, beyond which a rig has moved between two rows:
 one that stood there, and turned then, would seem to have gone on."""

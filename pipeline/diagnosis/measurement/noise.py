@@ -14,20 +14,22 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 
 LONGEST_OF_CYCLE = 0.1
-"""The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
+"""Longest correlation time of the noise over a cycle. A longer one would absorb drift and wear."""
 FINEST_ARCSEC = 0.005
 """Least standard deviation of a reading: no instrument repeats better, and without any noise every equation
 would be singular."""
 LAGS = 24
-"""Rows over which the residual's autocovariances are matched one by one; beyond, in groups."""
+"""Lags up to which the residual's autocovariances are matched one by one; larger lags are matched in groups.
+Judgement."""
 LAGS_PER_MEMORY = 3.0
-"""Times the longest memory allowed, as far as autocovariances are matched: of an exponential 5 % are left."""
+"""Largest lag over the longest correlation time allowed. An exponential has fallen to 5 % there."""
 GROUPS_PER_LOG = 5.0
 """Groups of lags for each factor e: within one of them an exponential of its length falls by a fifth."""
 LAG_0_WEIGHT = 3.0
-"""Of the variance against the autocovariances, in matching: it has the largest value and the least error."""
+"""Weight of the variance against the autocovariances in the matching: it has the largest value and the
+smallest error. Judgement."""
 LEAST_LAG_1 = 1e-12
-"""Of the moving average's variance: a covariance of neighbours that is less is rounding."""
+"""Share of the moving average's variance: a smaller covariance of neighbours is rounding."""
 MEMORIES = 16
 """Correlation times tried, in even steps of their log: up to 50 rows they are 36 % apart."""
 

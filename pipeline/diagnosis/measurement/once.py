@@ -1,4 +1,4 @@
-"""What is found once for each history, and needed again and again."""
+"""Results that are computed once for each history and needed repeatedly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ T = TypeVar("T")
 class once(Generic[*Numbers, T]):
     """A function whose answer for a history, and for the numbers given beside it, stays in its `memo`.
 
-    An array that is kept cannot be written to: the next to ask gets the same one.
+    A kept array is read-only, because the next caller gets the same one.
     """
 
     def __init__(self, find: Callable[[History, *Numbers], T]) -> None:
@@ -33,7 +33,7 @@ class once(Generic[*Numbers, T]):
         return kept
 
     def keep(self, history: History, answer: T, *numbers: *Numbers) -> None:
-        """An answer that is known already: a history made of another has what that one had."""
+        """Stores a known result: a history made from another one has that one's results."""
         if isinstance(answer, np.ndarray):
             answer.setflags(write=False)
         history.memo[self._key(numbers)] = answer

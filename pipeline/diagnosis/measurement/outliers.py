@@ -11,9 +11,9 @@ from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 OUTLIER_SIGMAS = 5.0
 """One row of normal noise in 1.7 million lies further off."""
 SAME_PLACE = 0.01
-"""Of the largest torque: outliers so near to each other, in other cycles, are at one place."""
+"""Share of the largest torque within which outliers of different cycles are at the same place. Judgement."""
 LONGEST_OUTLIER = 2
-"""Rows: three in a row are a finding."""
+"""Most rows of an outlier. Three rows in succession are a finding."""
 
 
 def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> np.ndarray:

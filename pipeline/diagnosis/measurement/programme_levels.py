@@ -1,4 +1,4 @@
-"""Levels at which a torque programme rests again and again: a rig's weights, a controller's set points."""
+"""Levels at which a torque programme rests repeatedly: a rig's weights, a controller's set points."""
 
 from __future__ import annotations
 

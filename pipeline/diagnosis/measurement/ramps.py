@@ -13,20 +13,20 @@ from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 MOVING = 0.3
-"""Of the fast rate: slower rows lie in a hold or a turn, not on a ramp."""
+"""Share of the fast rate. Slower rows lie in a hold or a turn, not on a ramp. Judgement."""
 FEWEST_HOLD_ROWS = 3
-"""Rows of a hold: two are a turn between samples."""
+"""Fewest rows of a hold. Two rows may be a turn between samples."""
 CLEAR_SIGMAS = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
 SHORT_SPAN = 0.3
 """Of the usual time over which a rate is taken, below which none is: rows at random times lie close together,
 and the noise of their torques passes for a rate."""
 CYCLE_PARTS = 60
-"""Of a cycle: steps over one of them say first how fast a ramp is."""
+"""Parts of a cycle. Steps over one part give the first estimate of a ramp's rate. Judgement."""
 FEWEST_STEPS = 20
-"""Of a unit's rows, side by side: the widest of them, over which rates are taken, leaves so many."""
+"""Fewest parts of a unit's rows, side by side, that the widest step of a rate must leave."""
 FAST_QUANTILE = 0.95
-"""Quantile of rates, or of steps, of rows that move, that is a ramp's."""
+"""Quantile of the rates, or steps, of moving rows that is taken for a ramp's."""
 NOISE_OF_FAST = 2.33
 """Times its noise, by which the difference of two rows exceeds the torque's at that quantile: 1.645·√2."""
 NOISE_MOVES = 5.7
@@ -46,7 +46,8 @@ class Rates:
 
 
 def rates_of(history: History, rows: np.ndarray) -> Rates:
-    """Rates along a unit's or a cycle's rows, over the fewest in which a ramp moves clear of torque noise."""
+    """Rates along a unit's or a cycle's rows, over the fewest rows in which a ramp exceeds the torque's
+    noise."""
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history, rows)

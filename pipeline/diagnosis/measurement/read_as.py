@@ -1,4 +1,4 @@
-"""How a measured file was understood: what a reader checks before believing a diagnosis."""
+"""How a measured file was read: the first thing to check before a diagnosis is believed."""
 
 from __future__ import annotations
 

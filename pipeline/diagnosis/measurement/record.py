@@ -21,11 +21,11 @@ from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings, without_wrong
 
 HEADS_SHOWN = 12
-"""Columns that a message lists."""
+"""Most columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
-"""Of different torques too: one more than zero, stiffness and gap."""
+"""Fewest rows, and fewest different torques: one more than zero, stiffness and gap."""
 LARGEST_TURN_PER_ROW = 0.01
-"""Of a turn, from row to row: 3.6°, far beyond the twist of any gear that is locked, and of its noise."""
+"""Share of a turn from one row to the next: 3.6°, far beyond the twist of any locked gear and its noise."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,11 @@ class EndPoints:
     angle_plus_arcsec: np.ndarray
     angle_minus_arcsec: np.ndarray
     read_as: ReadAs = AS_OURS
+
+    @property
+    def total_arcsec(self) -> np.ndarray:
+        """(n,) from −T to +T."""
+        return self.angle_plus_arcsec - self.angle_minus_arcsec
 
     def rows(self, chosen: np.ndarray) -> EndPoints:
         """The chosen rows (indices)."""
@@ -199,7 +204,7 @@ def _went_to(as_read: MeasuredTable, left: MeasuredTable) -> np.ndarray | None:
 
 
 def _refuse_empty(table: MeasuredTable, name: str, least: float) -> None:
-    """Readings that are all nothing: a channel that was not connected, or a slipped exponent."""
+    """Refuse readings that are all zero: a channel that was not connected, or a slipped exponent."""
     largest = np.abs(table.numbers[name]).max()
     if largest < least:
         unit = name.rpartition("_")[2].replace("Nm", "N·m")

@@ -7,7 +7,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 
 FEWEST_REPEATED_ROWS = 20
-"""Rows: two readings of a hundred different values each repeat by chance so often in 10⁴⁰ records."""
+"""Fewest rows that repeat. Two readings with a hundred different values each do so by chance once in 10⁴⁰
+records."""
 
 
 def copied_rows(sweep: Sweep) -> int:

@@ -10,9 +10,9 @@ from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.robust import robust_std
 
 PARTS = 12
-"""Of a cycle: in so small a part a branch is a parabola but for a thousandth of its twist."""
+"""Parts of a cycle. In one part, a branch differs from a parabola by a thousandth of its twist."""
 FEWEST_WINDOW_ROWS, MOST_WINDOW_ROWS = 7, 400
-"""Of a window: a parabola then takes up less than half of the noise, and more rows say no more of it."""
+"""Rows of a window. A parabola then absorbs less than half of the noise, and more rows add no information."""
 ANGLE_SPIKE_STEPS = 5
 """Times the step from row to row that 99 of 100 stay below: a reading so far outside of the rows around it
 is wrong. One bends the parabola away from all rows of its window; smaller ones lose their weight in time."""

@@ -1,4 +1,4 @@
-"""Where torque rests or all but rests: holds, and the slow rows around a turn."""
+"""Where torque rests or nearly rests: holds, and the slow rows around a turn."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FEWEST_SLOW_ROWS = 4
 """Rows of a slow run [1]: its mean is compared with those of its four parts
 (`sweep/residual/stick_slip_rests.py`)."""
 SLOWER_RATIO = 2.0
-"""Times the median number of rows that torque needs for the span."""
+"""Fewest rows of a slow run, over the median number of rows that torque needs for the span. Judgement."""
 
 
 def resting(history: History) -> list[np.ndarray]:

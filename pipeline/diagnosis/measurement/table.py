@@ -23,9 +23,9 @@ from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
 from flexspline.pipeline.diagnosis.measurement.units import symbol
 
 LARGEST_NUMBER = 1e12
-"""Beyond this no rig reads, in our unit; a slipped column or exponent does."""
+"""Largest number of a column in our unit. Only a slipped column or exponent is larger."""
 LIMITS = {"temperature_C": TEMPERATURE_C}
-"""Of columns, in our unit, where physics knows closer ones."""
+"""Limits of columns in our unit, where physics sets narrower ones."""
 OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
 """Columns that may be empty in every row: nothing was recorded then."""
 
@@ -46,6 +46,11 @@ class MeasuredTable:
     def has(self, *names: str) -> bool:
         """Whether all these columns exist."""
         return all(n in self.numbers or n in self.labels for n in names)
+
+    def unit_rows(self) -> list[np.ndarray]:
+        """Row indices of each unit under test."""
+        names = np.array(self.labels.get("unit", ("",) * len(self)))
+        return [np.flatnonzero(names == name) for name in np.unique(names)]
 
     def rows(self, chosen: np.ndarray) -> MeasuredTable:
         """The chosen rows (mask)."""
@@ -163,7 +168,7 @@ def _labels(grid: CellGrid, column: ReadColumn, texts: list[str]) -> tuple[str, 
 
 
 def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: DecimalMark) -> np.ndarray:
-    """Numbers in our unit; what is nothing, not finite or beyond any rig is refused."""
+    """Numbers in our unit; empty cells and numbers that are not finite or beyond any rig are refused."""
     values, bad = numbers_of(texts, mark)
     if bad is not None:
         text = texts[bad]

@@ -1,4 +1,4 @@
-"""The temperature without its reading's noise, which no gear feels.
+"""The temperature without the noise of its reading, which does not act on the gear.
 
 With the noise a gap that follows the temperature explains the angles best with a lag that is not there: a lag
 takes the mean of many readings. One of 7 arcsec/K, read with 0.05 K of noise, came out as 6.6 with a lag.
@@ -14,13 +14,14 @@ from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 INTERVAL_SIGMAS = 2.0
-"""Half an interval about a mean. Of noise alone means leave it once in 20 rows, and stay means of fewer."""
+"""Half an interval about a mean, in standard deviations. Noise alone leaves it in one row of 20, which is
+then averaged over fewer rows."""
 LARGEST_ROUNDING_K = 0.5
 """Thermometers show 0.1, 0.2 or 0.5 K; larger steps from cycle to cycle are an oven's."""
 STEP_SHARE = 0.01
 """Of a step of rounding, within which two are one: what is written in decimals differs by its last bit."""
 REACHES = (1, 2, 4, 8, 16, 32, 64)
-"""Rows on either side of the means tried: the noise of the last is a tenth."""
+"""Rows on either side of the means that are tried. The last one has a tenth of the noise."""
 
 
 @once

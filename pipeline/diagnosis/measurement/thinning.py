@@ -19,11 +19,12 @@ from flexspline.pipeline.diagnosis.robust import robust_std
 MOST_FIT_ROWS = 6000
 """A design matrix of 600 columns then takes 14 MB in float32."""
 FEWEST_PER_CYCLE = 150
-"""Rows of a cycle that are left: a block is then well below the crossing's band."""
+"""Fewest rows of a cycle that remain. A block is then far shorter than the crossing's band."""
 NOISE_SIGMAS = 4.0
-"""Of the torque's noise: a reading farther from those about it, one of 16 000, is a step of the torque."""
+"""Standard deviations of the torque's noise. A reading farther from those about it is a step of the torque;
+noise alone makes one of 16 000."""
 LEAST_ROUNDED = 0.1
-"""Of what a mean over a block rounds the sharpest corner off by: less is a bend."""
+"""Share of the rounding of the sharpest corner by a block's mean. A smaller rounding is a bend. Judgement."""
 SPIKE = 6.0
 """Standard deviations from the mean of both neighbours; one row of normal noise in 500 million."""
 

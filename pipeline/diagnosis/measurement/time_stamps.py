@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 LAST_HOUR = 23
-"""Of a day: a clock that goes beyond counts hours from the start."""
+"""Last hour of a day. A clock with larger hours counts from the start."""
 _PART = r"(?:(?:[.,]|:(?=\d{3}(?!\d)))(?P<part>\d{1,9}))?"
 """Of a second; after a colon they are milliseconds."""
 _CLOCK = rf"(?P<hour>\d{{1,4}}):(?P<minute>\d{{2}})(?::(?P<second>\d{{2}}){_PART})?"

@@ -31,7 +31,7 @@ PARABOLA_MIDDLE = 1.5
 RIDGE = 1e-12
 """Beside a parabola's equations, whose diagonal is 1 and more: rows of one time have some solution then."""
 FEWEST_STRAIGHT_ROWS = 4
-"""Rows of a straight way: a parabola leaves nothing of three."""
+"""Fewest rows of a straight way. A parabola fits three rows exactly."""
 
 
 READING = ("reading", 0.0)

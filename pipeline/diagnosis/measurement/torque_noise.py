@@ -11,13 +11,13 @@ from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 LARGEST_NOISE = 0.02
-"""Of the largest torque: what looks like more is no noise."""
+"""Largest noise over the largest torque. What looks like more is not noise. Judgement."""
 COARSE_STEP = (1e-3, 0.035)
 """Of the largest torque: what is read in smaller steps is not seen to be, larger ones are a programme's."""
 FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
 STEP_SHARE = 0.01
-"""Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
+"""Share of a step within which two levels count as whole steps apart: decimals differ by their last bit."""
 UNLIKE_RATIO, LEAST_OF_TYPICAL = 2.0, 0.05
 """Times the typical noise from which cycles have their own: by chance one of 24 rows has 1.5 times as much;
 and of the typical one at least: a way of few rows is not known better."""
@@ -124,10 +124,19 @@ def _rounding_Nm(history: History) -> float:
     levels = np.unique(history.torque_Nm)
     if len(levels) < FEWEST_LEVELS or history.readings is not None:
         return 0.0
-    steps, largest = np.diff(levels), float(np.abs(levels).max())
+    steps = np.diff(levels)
     step = float(np.median(steps))
-    coarse = COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest
-    alike = np.abs(steps / step - np.round(steps / step)) < STEP_SHARE
-    bends = np.concatenate([np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices])
-    restless = (np.abs(bends) > step / 2).sum() > RESTLESS_SHARE * len(history)
-    return step / np.sqrt(12) if coarse and alike.all() and restless else 0.0
+    restless = (np.abs(second_differences_Nm(history)) > step / 2).sum()
+    seen = restless > RESTLESS_SHARE * len(history) and are_coarse(steps, step, history.largest_Nm)
+    return step / np.sqrt(12) if seen else 0.0
+
+
+def are_coarse(apart: np.ndarray, step: float, largest: float) -> bool:
+    """Whether levels are whole steps `apart`, of a size that readings of a `largest` torque may have."""
+    alike = np.abs(apart / step - np.round(apart / step)) < STEP_SHARE
+    return bool(COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest and alike.all())
+
+
+def second_differences_Nm(history: History) -> np.ndarray:
+    """Of the torque from row to row, of all units in turn."""
+    return np.concatenate([np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices])

@@ -1,4 +1,4 @@
-"""Torques that stand out in a row or two and that the angle does not follow: no gear felt them.
+"""Torques that stand out in a row or two while the angle does not follow: they did not act on the gear.
 
 A motor switches beside the load cell's cable, say. Whatever has a memory would remember such a torque.
 """
@@ -18,11 +18,12 @@ about it, as a share of the largest torque, and in steps between the rows beside
 LARGEST_QUANTILE = 0.95
 """Of torques without sign, taken for the largest: spikes in up to a twentieth of the rows do not count."""
 LEAST_TWIST_SHARE = 0.25
-"""Of the twist that such a torque would make."""
+"""Least share of the twist that such a torque would cause. If the angle moves by less, it does not follow.
+Judgement."""
 ROWS_BESIDE = 3
-"""Rows on either side that are asked."""
+"""Rows on either side that are compared. Judgement."""
 ROWS_LATE = 2
-"""Rows by which two channels of a logger may be apart."""
+"""Rows by which two channels of a logger may be out of step. Judgement."""
 
 
 def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.robust import robust_std
 
 FEWEST_FOR_NOISE = 8
-"""Readings; of fewer a median of third differences rests on less than five."""
+"""Fewest readings. With fewer, the median of third differences is of less than five."""
 FIFTH_PER_SIGMA = 0.2533
 """What a fifth of |x| lies below for x normal with deviation 1, Φ⁻¹(3/5)."""
 

@@ -22,7 +22,7 @@ DAMAGE = (
     zipfile.BadZipFile, zlib.error, ElementTree.ParseError, LookupError, ValueError, OverflowError,
     StopIteration, EOFError, OSError, NotImplementedError, RuntimeError,
 )  # fmt: skip
-"""What a damaged zip, damaged XML, or XML that is no workbook's raises."""
+"""Errors of a damaged zip, damaged XML, or XML of another kind of file."""
 WORKBOOK = "xlsx"
 """What a workbook has in the place of a text's encoding."""
 BEGIN = b"PK\x03\x04"

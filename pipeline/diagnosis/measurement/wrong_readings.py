@@ -1,4 +1,4 @@
-"""Readings of a sweep that no gear and no programme made: a sensor's code for a fault, a slipped digit.
+"""Readings of a sweep that come from no gear or programme: a sensor's code for a fault, a slipped digit.
 
 One torque of 1e6 N·m is the largest of its record, by which every share of torque is measured, so such rows
 go before anything is computed. What a model leaves is looked at later (`outliers.py`).
@@ -23,7 +23,7 @@ FAR_RATIO = 3.0
 """Times as far from the median as every other reading: a programme goes to its largest torque by steps, and a
 gear by its slope. Only what stands alone or repeats itself is asked, and only against another channel."""
 LEAP_K = 50.0
-"""From one row to the next and back: an oven needs minutes for it, a gear hours."""
+"""[K] Leap from one row to the next and back. An oven needs minutes for it, a gear hours."""
 GEAR_C = Range(-197.0, 400.0)
 """Liquid nitrogen, in which gears for space are tested, boils at −196 °C; above 400 °C no grease and no film
 of MoS2 is left. The codes of a broken Pt100 (−200, 850 °C) lie outside."""
@@ -44,7 +44,7 @@ class WrongReadings:
 
     @property
     def rows_left_out(self) -> int:
-        """Of a wrong temperature the row stays."""
+        """A row with a wrong temperature stays."""
         return 0 if self.name == "temperature_C" else len(self.lines)
 
 
@@ -77,7 +77,7 @@ def _wrong(
 ) -> np.ndarray:
     """(n,) wrong readings of a column; each unit is asked by itself, as its zero is its own."""
     wrong = np.zeros(len(table), bool)
-    for rows in _units(table):
+    for rows in table.unit_rows():
         wrong[rows] = _wrong_in_unit(table.numbers[name][rows], judge_of(table, rows))
     return wrong
 
@@ -85,7 +85,7 @@ def _wrong(
 def _spikes(table: MeasuredTable) -> np.ndarray:
     """(n,) torques that no gear felt; each unit by itself."""
     found = np.zeros(len(table), bool)
-    for rows in _units(table):
+    for rows in table.unit_rows():
         torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
         found[rows] = torque_spikes(torque, angle)
     return found
@@ -95,16 +95,10 @@ def _bridged(table: MeasuredTable, wrong: np.ndarray) -> MeasuredTable:
     """The table with straight lines in time, or in rows without it, over wrong temperatures."""
     celsius = table.numbers["temperature_C"].copy()
     time = table.numbers.get("time_s", np.arange(len(table), dtype=float))
-    for rows in _units(table):
+    for rows in table.unit_rows():
         bad, good = rows[wrong[rows]], rows[~wrong[rows]]
         celsius[bad] = np.interp(time[bad], time[good], celsius[good])
     return replace(table, numbers={**table.numbers, "temperature_C": celsius})
-
-
-def _units(table: MeasuredTable) -> list[np.ndarray]:
-    """Row indices of each unit."""
-    names = np.array(table.labels.get("unit", ("",) * len(table)))
-    return [np.flatnonzero(names == name) for name in np.unique(names)]
 
 
 def _wrong_in_unit(values: np.ndarray, judge: Judge) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""How far a reading may be from what an extended model predicts, row by row."""
+"""How far a reading may lie from the prediction of an extended model, row by row."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ and a half times the record's largest torque."""
 CARRIED_UNSURE = 0.03
 """Of the torque that friction ahead of the gap carries; by judgement, after made-up records."""
 CARRIED_STEP = 0.003
-"""Of that torque, for slopes."""
+"""Step for slopes, as a share of that torque. Judgement: small against curvature, large against rounding."""
 MOST_PARAMETERS = 120
 """Of a covariance in a file: sixty thousand letters. Many units: a zero, a stiffness and a gap each."""
 

@@ -15,7 +15,8 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan
 
 SMALLER = 0.8
-"""Of the record's smallest cycle's torque: what friction does in smaller loops was not seen."""
+"""Share of the torque of the record's smallest cycle. How friction acts in smaller loops was not measured.
+Judgement."""
 
 
 def memory_variance(model: ExtendedModel, read: History, ends_Nm: Ends) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""extended_model.toml read back: nothing in it is taken on trust."""
+"""Reads extended_model.toml and checks everything in it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from flexspline.pipeline.diagnosis.model.model_keys import (
 from flexspline.pipeline.diagnosis.model.shape_check import fault_of
 
 FORMAT = 1
-"""Of the file; it grows when a key changes its meaning."""
+"""Version of the file format. It grows when a key changes its meaning."""
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,12 @@ MOST_TRAVEL = 0.95
 """Of the travel of torque was made at no more than the fastest rate that counts as measured, and at no less
 than the slowest: the rest are starts and turns."""
 RANGE_SLACK = 0.05
-"""Of a channel's range: noise and rounding are no extrapolation."""
+"""Share of a channel's range by which noise and rounding may exceed it. Judgement."""
 RATE_SLACK = 0.5
 """Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
 LEAST_RANGE_K = 10.0
-"""Temperatures that differ by less are one: beyond it, distances are told in this."""
+"""[K] Least range of temperature. Temperatures that differ by less count as one, and distances beyond are
+measured in this. Judgement."""
 LEAST_RATE_Nm_per_s = 1e-12
 """A rate of less is rounding of a hold: by it no rate is divided."""
 QUARTER_DEG = 90.0

@@ -22,8 +22,8 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.revolved import lobes, torsion
 
 BENCH_TORSION_WIDTH = 1e-3
-"""Of the bounds of the hole-free model's K, over K: a step of `sensitivity.SMALLEST_STEP` changes K by more
-than ten times as much."""
+"""Width of the bounds of the hole-free model's K over K. A step of `sensitivity.SMALLEST_STEP` changes K by
+more than ten times as much."""
 BENCH_LOBE_WIDTH = 5e-3
 """The same at the lobes, whose harmonics cost more: of the example cup (K_b 31 377 uniform, 26 832 at the
 lobes) it is 3 % of the way between them, a quarter of the narrower prior in `parameters.ZONES`."""
@@ -68,7 +68,7 @@ class Bench:
         solid = replace(self.context, design=design).part(part).context.design
         own = without_holes(solid).part(part)
         material = Elastic.of(own.material)
-        # where nothing is drilled, a circle and a diameter of holes may still be stated
+        # without bolts, the circle and diameter of holes may still be stated
         shape = own.shape.model_copy(update=NO_HOLES).model_dump(mode="json")
         width = relative_width or (BENCH_LOBE_WIDTH if lobed else BENCH_TORSION_WIDTH)
 

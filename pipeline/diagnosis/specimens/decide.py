@@ -1,4 +1,4 @@
-"""From a race to causes, rivals and what is left over.
+"""From a race to causes, rivals and unexplained structure.
 
 Rules, with their numbers:
 - The null is the simulation with its modulus calibrated by the design's prior and at most one dimension

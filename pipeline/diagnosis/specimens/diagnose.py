@@ -36,7 +36,7 @@ from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
 from flexspline.pipeline.parts import AnalysisContext
 
 FEWEST_SPECIMENS = 3
-"""One for the modulus, one for a cause, one to see noise."""
+"""Fewest specimens: one for the modulus, one for a cause, one to see noise."""
 FEWEST_HELD_OUT = 4
 """The rest then still has FEWEST_SPECIMENS specimens."""
 FAR_OFF_LOG_K = 0.25

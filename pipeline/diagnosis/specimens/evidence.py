@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.specimens.parameters import (
 )
 
 NOISES = (0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05)
-"""Relative standard deviation of a stiffness, where the file states none."""
+"""Relative standard deviations of a stiffness that are tried if the file states none."""
 USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 """One percent, within a factor of two, is what torsion rigs reach."""
 GAUSS_NEWTON_STEPS = 8
@@ -33,7 +33,7 @@ DIFFERENCE_STEP = 1e-4
 SECOND_TERM_NATS = -1.0
 """Log prior odds of a second term, 1 to 2.7."""
 MOST_ZONE = 1.2
-"""Beyond the lobes there is nowhere to go; a fifth is allowed for noise."""
+"""Largest load zone: 1 is all torque at the lobes; a fifth more is allowed for noise."""
 LEAST_MODULUS_STD = 1e-9
 """Of ln E, where the design states no doubt: the modulus then stays, and its column is still divided by a
 number above 0."""

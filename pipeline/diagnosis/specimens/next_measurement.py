@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
 
 DIMENSION_FACTORS = (0.6, 1.6)
-"""Of the drawing's dimension: what can still be made and bolted to the same rig."""
+"""New dimension over the drawing's: such parts can still be made and bolted to the same rig. Judgement."""
 ANOTHER_GEAR = ("inner_diameter_mm", "bore_diameter_mm")
 """Not to be changed on the same wave generator, teeth and rig."""
 CONFIRM = {YOUNGS_MODULUS: "material", SERIES: "fixture",

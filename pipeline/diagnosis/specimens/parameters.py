@@ -14,9 +14,9 @@ from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 
 MODULUS_SPREAD = 0.1
-"""Standard deviation of ln E where the material is another one than stated."""
+"""Standard deviation of ln E if the material is not the stated one. Judgement."""
 SERIES_SPREAD = 0.3
-"""Of an added compliance, as a share of the median specimen's."""
+"""Standard deviation of an added compliance over the median specimen's compliance. Judgement."""
 ZONES = ((1.0, 0.12, 0.35), (0.5, 0.35, 0.15))
 """Prior mean, standard deviation and odds of the load zone: where the simulation spreads the torque
 evenly, a real wave generator mostly takes it at its lobes, or part of the way."""
@@ -36,7 +36,7 @@ that whatever stands out of the noise fits."""
 CAUSE_KINDS = 4
 """Modulus, dimension, fixture, load zone: even odds."""
 LEAST_rad_per_Nm = 1e-30
-"""Of a specimen's compliance, for its logarithm: one that is tried as less is as bad as any."""
+"""Smallest compliance of a specimen whose logarithm is taken. All smaller ones fit equally badly."""
 UNNAMED_STRUCTURE_NATS = -3.0
 """Log prior odds of all structure without a name, 1 in 20: a fifth of one of CAUSE_KINDS."""
 

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit, Specime
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter
 
 SECOND_FROM = 7
-"""Pairs are made of so many of the best single terms, and of every named one."""
+"""Best single terms of which pairs are made, besides every named one. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,10 @@ from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 
 SMALLEST_STEP = 0.05
-"""Of a dimension: a tolerance can be so small a share of it that K's change would be the mesh's."""
+"""Smallest step over the dimension. A tolerance can be so small that K's change would come from the mesh."""
 LARGEST_DIMENSION_STEP = 0.3
-"""Of a dimension: a tolerance can be more than all of it, of a fillet say; a third less is still a part."""
+"""Largest step over the dimension. A tolerance can exceed the dimension, as of a fillet; a part with a third
+less is still a part."""
 MOST_TOLERANCES = 5.0
 """General tolerances: nine of ten wrong dimensions are nearer by their prior, `WRONG_TOLERANCES`."""
 LEAST_CHANGE = 0.02

@@ -1,4 +1,4 @@
-"""What the simulation alone leaves of a record, calibrated as far as its stated doubt goes."""
+"""The residual of the simulation alone, calibrated within its stated uncertainty."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.regressors import (
 )
 
 ALLOWED_SIGMAS = 2.0
-"""Standard deviations by which a calibration may move without being a finding."""
+"""Standard deviations by which a calibration may move without being a finding: the usual 95 %."""
 
 
 def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:

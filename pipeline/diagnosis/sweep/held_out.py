@@ -1,4 +1,4 @@
-"""What the extension is worth on data not used for fitting it."""
+"""Prediction error of the extended model on data that were not used for fitting it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.second_process import results_of
 
 MOST_HELD_OUT_ROWS = 24_000
-"""Rows that all levels together may take, each with a search of its own: 1.5 ms of a processor a row."""
+"""Most rows of all levels together. Each level has its own search, at 1.5 ms of a processor per row."""
 FEWEST_RMS_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 
@@ -98,7 +98,7 @@ def refuted(levels: Iterable[Gain]) -> Unexplained | None:
 
 
 def _does_harm(gain: Gain) -> bool:
-    """Harmonics that four positions leave open are not refuted at a fifth."""
+    """A fifth position cannot refute harmonics that four positions leave open."""
     return (
         not gain.elsewhere
         and _times_worse(gain) >= REFUTED_RATIO

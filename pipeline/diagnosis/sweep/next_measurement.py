@@ -1,4 +1,4 @@
-"""The measurement that would tell rivals apart best, computed from what they predict."""
+"""The measurement that would distinguish rivals best, computed from their predictions."""
 
 from __future__ import annotations
 
@@ -27,15 +27,16 @@ from flexspline.pipeline.diagnosis.sweep.held_out_splits import rate_range, whol
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 
 PLANNED_CYCLE_ROWS = 64
-"""Rows of one triangular cycle [1]: sixteen between zero and the largest torque draw its shape."""
+"""Rows of one triangular cycle. Sixteen between zero and the largest torque show its shape."""
 DEFAULT_RAMP_S = 30.0
-"""[s] of a ramp where the record has no times: a usual pace of a rig."""
+"""[s] Time of a ramp if the record has no times: a usual pace of a rig. Judgement."""
 WARMER_K = 20.0
 """From 20 to 40 °C; the separation of rivals by this plan grows in proportion to it."""
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 """Steps of 50° tell the harmonics 1, 2 and 4 per turn apart; at steps of 60° 4 is an alias of 2."""
 LONG_HOLD = 20.0
-"""Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
+"""Length of a long hold in ramps: two decades of time from a fifth of a ramp on, over which creep and lag
+differ."""
 AMPLITUDES = (0.25, 0.5, 1.0, 1.5)
 """Times the largest torque: two octaves within the record, and half as much again beyond it, but not beyond
 rated torque."""
@@ -173,7 +174,8 @@ def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, n
 
 
 def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasurement | None:
-    """What to measure next: to find the unknown, to part rivals, or to confirm the smallest cause."""
+    """What to measure next: to find the unknown effect, to distinguish rivals, or to confirm the smallest
+    cause."""
     if decision.verdict == "unknown" and decision.unexplained:
         worst = decision.unexplained[0]
         return NextMeasurement(worst.channel, "find_structure", structure=worst.structure)

@@ -16,9 +16,11 @@ from flexspline.pipeline.diagnosis.sweep.rig_faults.clamp_slip import slip_of
 from flexspline.pipeline.diagnosis.sweep.twist_ratio import simulated_twist_arcsec, sweep_size
 
 MOST_SLOPE_RATIO = 10.0
-"""Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
+"""Largest ratio of measured and simulated slope. No part that is left out or stated wrongly exceeds it.
+Judgement."""
 SLOW_SHARE = 0.04
-"""Of the simulated twist from one end to the other: through slow noise that is larger nothing is compared."""
+"""Slow noise over the simulated twist from end to end. With more noise, nothing can be compared.
+Judgement."""
 NEGATIVE_GAP_DEVIATIONS = 3.0
 """Standard deviations below 0 at which a gap is negative: one in 740."""
 

@@ -12,7 +12,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
-"""Of the largest torque; of a unit's rows."""
+"""Share of the largest torque that counts as far from zero, and the largest share of a unit's rows before it
+that may be left out. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Units under test that differ: each is judged by its own rows.
 
-One gear of three may drift, or have another position error. All rows together then show the mean of an effect
-and of none, and what that misses in each unit has no name.
+One gear of three may drift, or have another position error. All rows together then show a mean of an effect
+and of none, and its misfit in each unit has no cause.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, judge
 USUAL_SCATTER = 0.4
 """Of the median size: by so much units of one batch may differ, friction foremost, and are told together."""
 MOST_UNITS = 12
-"""That are judged each by itself: a unit takes about a second."""
+"""Most units that are each judged by itself. A unit takes about a second."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,8 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
 
 
 def _differing(explained: ExplainedSweep) -> set[str]:
-    """Causes that units have unlike; a gap far from the simulated one, or crossed elsewhere, in one."""
+    """Causes that differ between units, and a gap of one unit that is far from the simulated one or crossed
+    elsewhere."""
     prepared, fit = explained.prepared, explained.identified.fit
     found = {cause for cause, shares in explained.shares.items() if shares.differ}
     if any(fit.calibration_of(u).far_off(prepared.prediction) for u in range(fit.units)):

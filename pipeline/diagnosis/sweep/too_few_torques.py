@@ -9,9 +9,9 @@ from flexspline.pipeline.diagnosis.measurement.record import FEWEST_SWEEP_ROWS, 
 from flexspline.pipeline.diagnosis.shortage import ConstantTorque, FewTorques
 
 CONSTANT_SHARE = 0.1
-"""Torque that varies by less than this share of its largest value is constant."""
+"""Torque that varies by less than this share of its largest value is constant. Judgement."""
 FEWEST_CREEP_HOLDS = 3
-"""Up, back, and once more: what grows in one hold only may be drift."""
+"""Fewest holds: up, back, and once more. Growth in a single hold may be drift."""
 
 
 def too_few_torques(sweep: Sweep) -> ConstantTorque | FewTorques | None:

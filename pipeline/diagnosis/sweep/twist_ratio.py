@@ -14,9 +14,9 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import rms, robust_std
 
 MOST_SIZE_ROWS = 20_000
-"""A size needs no more; every n-th row of longer records is taken."""
+"""Most rows for the size. Of longer records every n-th row is used."""
 FEWEST_SIZE_ROWS = 8
-"""Rows beyond the crossing: half of them for zero, drift, slope and gap."""
+"""Fewest rows beyond the crossing: twice the unknowns zero, drift, slope and gap."""
 RATIO_DEVIATIONS = 4.0
 """Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
 STEP_DEVIATIONS = 2.0

@@ -1,4 +1,4 @@
-"""The model that is written: fitted with what stands in it, and with nothing else."""
+"""The model that is written: fitted with its own terms only."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 CROSSING_WIDTHS, NARROWEST_CROSSING = 24, 0.01
 """Widths tried of the gap's crossing, up to the band of rows that no fit uses, and the least of that band."""
 SPREAD_NATS = 3.0
-"""Over no width, from which one is told: odds of 20 to 1."""
+"""[nats] Least evidence over no width at which a width is written: odds of 20 to 1."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def written_model(
     """The calibrated simulation with the named causes, by the best set's shapes.
 
     Where the best set has nuisance terms or minor causes beside them, zeros, stiffness, gap and amplitudes
-    are fitted again without: fitted beside terms that are left out, they make up for what is not there.
+    are fitted again without: fitted together with terms that are left out, they would compensate for them.
     """
     identified = explained.identified
     evidence, terms = identified.search.evidence, identified.best.terms

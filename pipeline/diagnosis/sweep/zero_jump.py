@@ -8,9 +8,10 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 FEWEST_STEP_ROWS = 3
-"""Rows on either side of a step: fewer are spikes."""
+"""Fewest rows on either side of a step. Fewer are spikes."""
 LEAST_NEW = 1e-6
-"""Of a step's own square: one of which less is new beside the smooth functions is one of them."""
+"""Least part of a step beside the smooth functions, over its square. A step with less is one of these
+functions: rounding."""
 
 
 def sudden_step(history: History, angle_arcsec: np.ndarray, kept: np.ndarray) -> int | None:

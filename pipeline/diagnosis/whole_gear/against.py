@@ -14,7 +14,7 @@ from flexspline.pipeline.gear.gear_chain import Chain
 from flexspline.pipeline.gear.gear_curve import LOADING
 
 SMALLEST = LOADING[0]
-"""Of the largest torque: there the teeth have just met, and twice the angle is the gap."""
+"""Share of the largest torque at which the teeth have just met, so that twice the angle is the gap."""
 PLACES = np.concatenate([np.linspace(SMALLEST, 0.1, 13), np.linspace(0.125, 1.0, 36)])
 """Torques of the curve, of the largest: teeth come into mesh mostly at small torque. Straight lines between
 them are off by less than 0.1 % of the wind-up on the gears tried."""

@@ -28,11 +28,11 @@ OF_THE_LOOP = (FRICTION, RATE)
 BINS = 12
 """Of torque, from the gap's crossing to the largest: as many places as bends of a gear's curve need."""
 FEWEST_CYCLES = 3
-"""From which on their scatter says how sure a mean is."""
+"""Fewest cycles whose scatter shows how well a mean is known."""
 
 
 LEAST_SHARE = 1e-3
-"""Of the largest torque: below it the gear's own curve moves by less than any reading resolves."""
+"""Share of the largest torque below which the gear's own curve moves by less than any reading resolves."""
 
 
 @dataclass(frozen=True)

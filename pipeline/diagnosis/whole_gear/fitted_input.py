@@ -15,9 +15,11 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
 from flexspline.pipeline.gear.gear_chain import Chain
 
 SECANT_STEPS = 4
-"""Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""
+"""Most steps of the secant method. Curves are nearly linear in an input, and the last steps are below 1 % of
+the first."""
 SETTLED_SHARE = 0.01
-"""Of an input's first step: a smaller change ends the search, as the last of the four steps would be."""
+"""Share of an input's first step. A smaller change ends the search: the last of the four steps would be as
+small."""
 KNOTS = 16
 """Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
 

@@ -1,4 +1,4 @@
-"""Which input of the whole gear's model explains what a sweep leaves of its curve.
+"""Which input of the whole gear's model explains the difference between a sweep and the gear's curve.
 
 Each input alone is moved from its nominal value until the curve fits the middle of the measured loop best,
 by chi square. One that fits is named, with those that fit as well as its rivals, and a torque that would tell
@@ -45,7 +45,7 @@ from flexspline.pipeline.gear.gear_chain import Chain
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0
-"""Deviations of a place by which two rivals must differ to be told apart there."""
+"""Standard deviations by which two rivals must differ at a torque to be distinguished there."""
 InputsVerdict = Literal["consistent", "named", "pair", "unknown"]
 
 

@@ -18,11 +18,13 @@ STROKE_SHARES = (0.7, 1.3)
 SOFTEST_PAIR = 100.0
 """Times the computed compliance of a pair of teeth."""
 STIFFEST_SERIES, SOFTEST_SERIES = -0.9, 1e3
-"""Of the shaft's compliance, added: one tenth of it is left, or a joint a thousand times softer comes in."""
+"""Limits of the added compliance over the shaft's: a tenth of the shaft's compliance is left, or a joint a
+thousand times softer is added. Judgement."""
 FIRST_FLANK_um, FIRST_PLAY_um, FIRST_STROKE_SHARE = 1.0, 2.0, 0.01
 """First steps: what a maker's tolerance on clearance, play and stroke allows."""
 FIRST_PAIR, FIRST_SERIES = 3.0, 0.2
-"""First steps, times the pair's and the shaft's compliance. Chosen: both are less sure than lengths are."""
+"""First steps, times the pair's and the shaft's compliance. Judgement: both are known less well than
+lengths."""
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,11 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
 from flexspline.pipeline.gear.gear_chain import Chain
 
 PAIRS_FOLLOWED = 3
-"""Pairs that are followed with the model: slopes at the nominal values order them, roughly."""
+"""Pairs that are fitted with the model. Slopes at the nominal values put them in order roughly. Judgement."""
 PAIR_STEPS = 6
 """Of Gauss-Newton; the sixth step of made-up records is below a hundredth of a deviation."""
 PAIR_SETTLED_SHARE = 0.02
-"""Of a first step: a smaller change of both inputs ends the search."""
+"""Share of a first step. A smaller change of both inputs ends the search. Judgement."""
 LEAST_ROOM = 1e-9
 """In first steps: an input whose end is reached has no room, and `lsq_linear` wants ends that differ."""
 ChainAngles = Callable[[Chain], np.ndarray]

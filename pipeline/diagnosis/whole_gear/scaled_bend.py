@@ -20,11 +20,12 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.calibrated_residual import ALLOWED_SIGMAS
 
 LOOP_POWERS = (0, 1, 2)
-"""Of torque: loops as wide everywhere, wider at large torque, and closed at the largest."""
+"""Powers of torque by which a loop's width varies: equal everywhere, wider at large torque, and closed at the
+largest."""
 WIND_UPS = (0.06, 0.12, 0.25, 0.5)
 """Of the largest torque, scales of a soft wind-up, tanh: without them it would pass for more bend."""
 FEWEST_BEND_ROWS = 32
-"""Twice the unknowns of one unit."""
+"""Fewest rows: twice the unknowns of one unit."""
 LOST_RATIO, FEWEST_LOST_ROWS = 2.0, 40
 """Squares left by the better of both bends over those left by a bend of its own size, from which a part of it
 is lost; of so many rows the odds are then a million to 1."""

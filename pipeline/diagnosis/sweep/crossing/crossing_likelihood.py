@@ -21,13 +21,13 @@ IN_GAP = 0.1
 """Of the rows at the place itself, those in the gap, anywhere in it: a rig rests there before and after its
 cycles, and a record has 10 to 20 rows within the torque's noise of the place."""
 OUTLIER_SHARE = 0.01
-"""Rows that the crossing's model does not claim."""
+"""Share of the rows that are outliers of the crossing's model. Judgement."""
 SPIKE_REACH = 6.0
 """Times the noise, beside twice the gap, over which such a row may lie: three deviations either way."""
 LEAST_WIDTH = 1e-4
-"""Of the largest torque: a crossing without torque noise has this width, below any torque cell's digits."""
+"""Width of a crossing without torque noise, over the largest torque; below any torque cell's digits."""
 FAR_SIDE = 5.0
-"""Widths from the place, beyond which a row's side is sure to one in three million."""
+"""Widths from the place beyond which a row's side is certain except for one in three million."""
 STRAIGHT_ENDS = 8.0
 """Times the reading's noise, from which soft ends are as good as straight within it: the bend moves a row by
 0.006 of half the gap at most (a hyperbolic tangent's second derivative is 0.77 at most, over 2·8²)."""
@@ -48,7 +48,7 @@ class Blur:
 
     @property
     def reach(self) -> float:
-        """Beyond which the side of a row is sure."""
+        """The distance beyond which the side of a row is certain."""
         return FAR_SIDE * (self.reading + self.ends)
 
 

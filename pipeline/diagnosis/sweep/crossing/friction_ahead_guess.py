@@ -24,11 +24,13 @@ from flexspline.pipeline.diagnosis.sweep.crossing.step_fit import (
 from flexspline.pipeline.diagnosis.sweep.crossing.torque_offset_guess import FIRST_NATS
 
 LARGEST_FRICTION = 0.45
-"""Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
+"""Largest friction that is tried, over the largest torque. With more, the teeth would carry hardly more than
+the bearing."""
 COARSE_PLACES, FINE_PLACES = 16, 9
 """Places tried: 2.8 % of the largest torque apart, less than the band's whole width (7 %), then between."""
 BOTH_NATS = 6.0
-"""Of the friction alone over none, from which a shifted reading beside it is tried: each hides the other."""
+"""Nats of friction alone over none from which a shifted reading beside it is tried. Each can hide the
+other."""
 OFFSETS = 33
 """Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
 ALIKE_PLACES, ALIKE_NATS = 60, 1.0

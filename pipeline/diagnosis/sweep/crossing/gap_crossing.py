@@ -19,19 +19,21 @@ from flexspline.pipeline.diagnosis.sweep.crossing.crossing_likelihood import (
 )
 
 OFFSET_REACH = 0.35
-"""Offsets searched, as a share of the largest torque."""
+"""Largest offset that is searched, over the largest torque. Judgement."""
 INSIDE_SHARE = 0.9
 """Of OFFSET_REACH: offsets tried, so that rows lie on both sides of each."""
 OFFSET_STEPS = 141
 """Odd, so that one of the offsets tried is 0; the best is refined between its neighbours."""
 UNSEEN_SIGMAS = 3.0
-"""Standard deviations of the torque noise: an offset within is none."""
+"""Standard deviations of the torque noise. A smaller offset counts as none."""
 EACH_SIDE, FEWEST_EACH_SIDE = 0.3, 4
-"""Share of the largest torque that must be passed on both sides of zero, by so many rows each."""
+"""Share of the largest torque that must be exceeded on both sides of zero, and by how many rows each.
+Judgement."""
 SEEN_RATIO = 2.0
-"""Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
+"""Smallest gap over one reading's noise whose crossing is visible. Judgement."""
 WITHIN_GAP = 0.25
-"""Of the gap, from its middle: a row there lies in the gap, which is then crossed at its torque."""
+"""Distance from the gap's middle, over the gap. A nearer row lies in the gap, which is crossed at its torque.
+Judgement."""
 FAR_BEHIND = 4.5
 """Nats: an offset three deviations from the best one is so much less likely."""
 FINE_STEPS, ZOOMS = 161, 2

@@ -23,15 +23,16 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.nuisance.lagged_torque import lagging_torque
 
 MOST_ZEROS = 40
-"""Cycles with a zero of their own each; where there are more, each unit has one."""
+"""Most cycles of a record in which each cycle has its own zero. With more, each unit has one zero. Judgement:
+it limits the columns."""
 MOST_FIRST_ROWS = 3000
-"""Rows of a first guess, evenly chosen: a longer record costs no more."""
+"""Most rows of a first guess, evenly chosen, so that a longer record takes no longer."""
 BESIDE_BAND = 0.3
 """Of the crossing's band, 1.2σ or more of the torque's noise: nearer rows may lie on either side."""
 LEAST_STEP = 0.15
-"""Of the gap as simulated: a smaller step is not the gap."""
+"""Least step over the simulated gap. A smaller step is not the gap. Judgement."""
 DEPENDENT = 4.0
-"""Neighbouring rows that count as one: a smooth function misses them alike."""
+"""Neighbouring rows that count as one, since a smooth function misses them by the same amount. Judgement."""
 SINGULAR_SHARE = 1e-12
 """Of the normal equations' largest eigenvalue: functions that are one but for 1e-6 share their coefficient.
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
@@ -44,7 +45,8 @@ CONSTANT_SHARE = 1e-12
 """Of a cycle's number, or K: a temperature that does not change is off its mean by rounding, some 1e-14."""
 
 TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
-"""Thresholds of ordinary friction that may act at every place tried: only the step decides."""
+"""Thresholds of ordinary friction that are fitted at every place tried, so that only the step decides.
+Judgement."""
 
 
 def looped_functions(history: History) -> np.ndarray:

@@ -34,7 +34,8 @@ verdict of 34 made-up records (`tests/hidden`, seed 77)."""
 MOST_TERMS = 8
 """Of a set. Doubled, it changes no verdict of 12 of those 34 (every third): none needs so many."""
 WORTH_NATS = 0.5
-"""Nats that a larger set must gain for the search to go on."""
+"""[nats] Least gain of a larger set for which the search continues. Judgement: half of what one more element
+costs."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,12 +30,12 @@ LINEAR = {SERIES: 0, CLEARANCE: 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
 LEAST_GAP_ARCSEC = 1e-3
-"""Of a row's own: no angle reading resolves less, and a gap is never negative."""
+"""[arcsec] Smallest gap of a row. No angle reading resolves less, and a gap is never negative."""
 GAP_BESIDE_WIND_UP = 0.03
 """Of a soft wind-up from one side to the other, by which a gap beside it is doubted: its law near zero is not
 seen. Of 17 records made up by another law, 1 − e^(−T/w), 68 % were off by less than 0.022, 90 % than 0.07."""
 SLOPE_STEP = 0.3
-"""Of a standard deviation, for slopes of magnitudes: near enough to the mean to be first order."""
+"""Step for slopes of magnitudes, over a standard deviation: small enough to be of first order."""
 
 
 @dataclass(frozen=True)

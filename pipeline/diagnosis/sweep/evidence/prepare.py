@@ -30,7 +30,7 @@ from flexspline.pipeline.diagnosis.sweep.zero_jump import sudden_step
 ROWS_PER_PARAMETER = 6
 """Of the local parabolas, three parameters each, in a cycle of 216 rows: windows are a twelfth of it."""
 FEWEST_KEPT, PER_UNIT = 12, 4
-"""Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
+"""Fewest rows, and more for each further unit, which has its own zero, stiffness and gap. Judgement."""
 
 
 class TooFewRowsError(FlexsplineError, ValueError):

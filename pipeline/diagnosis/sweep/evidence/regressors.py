@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
-"""The zero of the angle is free."""
+"""[arcsec] Prior standard deviation of the angle's zero: so wide that the zero is free."""
 
 
 ShapeKey = tuple[str, tuple[tuple[str, float], ...]]
@@ -183,7 +183,8 @@ def _nuisance_regressor(rival: NuisanceTerm, alike: int, at: int, rig: FitContex
 NARROW = 2
 """Rows on each side over which the torque is taken as a parabola; `USUAL_ROWS` and `widest` beside it."""
 NOISE_COLUMNS = 3
-"""Of the torque's noise: what parabolas over `NARROW`, `USUAL_ROWS` and `widest` rows take off."""
+"""Columns of the torque's noise: the parts that parabolas over `NARROW`, `USUAL_ROWS` and `widest` rows
+remove."""
 LEAST_PRIOR = 1e-9
 """Arcsec, or arcsec per N·m: what the design states without doubt is held, by a deviation above 0."""
 

@@ -18,15 +18,15 @@ TUNING_STEPS = 4
 """Gauss-Newton steps at most: together they change a parameter by up to a factor e² (LONGEST_LOG_STEP).
 Doubled, they change no verdict of 12 made-up records (`tests/hidden`, seed 77, every third of 34)."""
 STEP_STD = 0.4
-"""Prior standard deviation of the log of a shape parameter, about where a step starts."""
+"""Prior standard deviation of the log of a shape parameter about the start of a step. Judgement."""
 LONGEST_LOG_STEP = 0.5
 """Largest change of the log of a parameter in a step; shapes of a grid are less than two such apart."""
 LOG_DIFFERENCE = 0.03
-"""Of the log of a parameter, for slopes."""
+"""Step of the log of a parameter, for slopes: 3 %. Judgement."""
 STEP_SHARES = (1.0, 0.35)
-"""Of a step: whole, and where that loses evidence, a third of it."""
+"""Shares of a step that are tried: all of it, and if that loses evidence, a third. Judgement."""
 ENOUGH_NATS = 0.05
-"""Nats: a step that gains less is the last."""
+"""[nats] A step that gains less is the last. Judgement: no verdict turns on so little."""
 
 
 @dataclass(frozen=True)

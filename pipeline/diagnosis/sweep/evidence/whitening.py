@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.noise import Noise, Whitener, str
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import reading_of
 
 MOST_ROWS = 4000
-"""Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
+"""Most whitened rows. More are summed in blocks, which is linear and distorts nothing."""
 
 
 @dataclass(frozen=True)

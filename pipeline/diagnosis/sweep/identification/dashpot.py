@@ -23,9 +23,10 @@ from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import gauss
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 
 POWERS = (0.35, 1.0)
-"""Of the speed, from and to: greases thin with speed by powers of a half and more (Carreau's law)."""
+"""Powers of the speed that are tried, from and to. Greases become thinner with speed by powers of a half and
+more (Carreau's law)."""
 TIMES = (0.01, 0.5)
-"""Of a ramp, from and to: how long the lag would take to build up at its first rate."""
+"""Time over a ramp's, from and to: how long the lag would take to build up at its initial rate. Judgement."""
 TRIED_NUMBERS, ZOOMS = (6, 9), 3
 """Powers and times tried at once, evenly and by equal factors; and how often about the best of them, a third
 as far apart each time."""

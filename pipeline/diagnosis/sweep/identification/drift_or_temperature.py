@@ -1,4 +1,4 @@
-"""Whether a drift of the angle reading may as well be a zero that follows the temperature, at once or late.
+"""Whether a drift of the angle reading may instead be a zero that follows the temperature, at once or late.
 
 Where the temperature goes one way while the record runs, it is a clock. No cause has that zero's name, so it
 is no rival in the race; the drift is then said with both words.

@@ -1,4 +1,4 @@
-"""What the misfit of one cause's shape adds to the sizes of the others, which take up what they can of it."""
+"""How much the misfit of one cause's shape changes the sizes of the others, which absorb a part of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much each owner of a fitted set adds to the angle, alone and with others."""
+"""How much each owner of a fitted set adds to the angle, alone and together with others."""
 
 from __future__ import annotations
 

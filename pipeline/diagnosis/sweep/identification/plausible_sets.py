@@ -1,4 +1,4 @@
-"""Sets of terms that fit a misfit or the noise: no best set is one of them."""
+"""Excludes sets of terms that only fit a misfit or the noise."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ OF_TORQUE_NOISE = 0.7
 """Of what the torque's noise is in the angle: the noise drives a memory too, and leaves a trace of it up to
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
 TOGETHER_RATIO = 3.0
-"""Times that many effects may be larger, each for itself, than what they are together."""
+"""How much larger than their sum many effects may be, each by itself. Judgement."""
 CURVES = {SERIES: 1, HARDENING: 2}
 """Causes whose angle is a curve over the torque, and what of such a curve may be the gear's own: its zero;
 of a hardening its compliance too. As powers of the torque below that one."""
@@ -119,7 +119,7 @@ def _undone(fit: SweepFit, owners: Collection[str]) -> bool:
 
 
 def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
-    """Whether one cause's elements are large effects that together are small: that makes any curve."""
+    """Whether one cause's elements are large effects that nearly cancel: such sums can form any curve."""
     fit = fit_regressors(evidence, c.terms)
     parts = np.array([
         evidence.columns.all[evidence.kept][:, evidence.terms[i].at] @ amplitudes

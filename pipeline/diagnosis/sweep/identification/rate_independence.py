@@ -31,15 +31,17 @@ RATES_WITHIN = 1.9
 sine's are 2.3 apart, and its loop by the rate is round, by friction pointed. A triangle's are as far apart
 as noise makes them, 1.6 at most: they are taken over steps of eight times the torque's."""
 SLOW_AND_FAST = (0.1, 0.9)
-"""Of the travel, slower than the two rates: starts and turns lie in the tenths beyond."""
+"""Shares of the travel that are slower than the slow and the fast rate. Starts and turns lie in the tenths
+beyond."""
 RATES_APART = 1.2
-"""Of the quickest to the slowest cycle: a twist in proportion to the rate then differs by a fifth."""
+"""Least ratio of the fastest cycle's rate to the slowest one's. A twist proportional to the rate then differs
+by a fifth."""
 FOLLOWS_NATS = 3.0
 """By which the rate must be better than the loop that knows none: in made-up records false ones gain at most
 1.4, true ones 11 and more."""
 
 LOOPS = {FRICTION: RATE, RATE: FRICTION}
-"""Causes that open a loop, each with the other that does."""
+"""Causes that open a loop, each with the other one."""
 UNNAMED_LOOPS = ("?direction", "?torque_rate", "?torque_amplitude")
 """Owners of terms that open or bend a loop and have no name."""
 

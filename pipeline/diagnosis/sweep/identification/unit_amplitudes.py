@@ -1,4 +1,4 @@
-"""Several units in one file: what is common to them, and what is one unit's own."""
+"""Several units in one file: which effects are common to them, and which belong to one unit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ each record is asked and one that differs has the units judged apart."""
 SHARE_STD = 2.0
 """Prior standard deviation of a unit's amplitude, over the common one: a ratio of 0 or 3 is likely."""
 SHOWS, SHOWS_NOT = 4.0, 2.0
-"""Standard deviations from zero of an amplitude that a unit surely has, and surely need not have."""
+"""Standard deviations from zero of an amplitude that a unit certainly has, and that it need not have."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""How far other sets of terms, which explain a record about as well, leave a cause's size open."""
+"""Uncertainty of a cause's size because other sets of terms explain a record about as well."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.sweep.identification.identification import Id
 def std_over(
     identified: Identification, others: Iterable[Candidate], cause: str, magnitude: float
 ) -> float:
-    """Root mean square of how far each set leaves the size, 0 of the best one's; each counts by its score."""
+    """Root mean square difference of each set's size from the best set's, weighted by the sets' scores."""
     evidence, best = identified.search.evidence, identified.best
     found = list(others)
     weight = np.exp([min(c.score - best.score, 0.0) for c in found])

@@ -1,4 +1,4 @@
-"""What is open of hardening's and friction's size as no row says at which place friction takes its torque.
+"""Uncertainty of hardening's and friction's sizes because no row shows where friction takes its torque.
 
 Friction found behind the gap adds twist in proportion to its torque. Where it takes that torque before it
 reaches the soft wind-up, the wind-up's own slope stands in the place of the mean one: the loop is wider where
@@ -23,7 +23,7 @@ LEAST_OTHER_SIDE = 0.15
 """Torque is on both sides of zero where the smaller side has more than this share of the larger: a loop
 closes within some percent of its turn, and noise is less."""
 EVEN_ODDS = 0.5
-"""That friction acts before the wind-up, and not beside it."""
+"""Probability that friction acts before the wind-up, and not beside it: even odds."""
 
 
 def hardening_std(fit: SweepFit) -> float:

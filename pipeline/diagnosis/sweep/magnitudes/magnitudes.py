@@ -1,8 +1,9 @@
-"""Magnitudes of what is named, and how far each may be off: all sets that explain the record count."""
+"""Magnitudes of the named causes and their standard deviations, by all sets that explain the record."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -19,6 +20,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import Gauss
 from flexspline.pipeline.diagnosis.sweep.evidence.regressors import shape_key
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.magnitudes.between_sets_std import std_over
 from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
@@ -29,11 +31,13 @@ SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
 the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
-"""Sets that count by less than e^−6 = 0.25 % are left out."""
+"""Sets with a weight below e^−6 = 0.25 % are left out."""
 NEAR_ZERO = 0.15
-"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
+"""Share of the largest torque. Rows within it show the width of a loop at T = 0, whatever shape was found.
+Judgement."""
 MOST_SHAPES = 24
-"""Of these sets at most, the likeliest: each is fitted again for its deviation."""
+"""Most of these sets, the likeliest ones. Each is fitted again for its standard deviation. Judgement: it
+limits the time."""
 
 
 def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
@@ -84,20 +88,17 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
 
 
 def _spring_std(identified: Identification, magnitude: float) -> float:
-    """Of a spring's size, by laws of other causes that fit as well and leave it another one.
+    """Standard deviation of a spring's size, by laws of other causes that fit as well with another spring."""
+    others = _but_for_a_spring(identified.search.evidence, identified.best)
+    return std_over(identified, others, SERIES, magnitude)
 
-    Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
-    says: they count alike. What the prior says of larger springs is no evidence of the smaller.
+
+def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[Candidate]:
+    """The best set with a term's shape replaced by one that leaves the spring another size.
+
+    All have the best set's score. No row says whether friction takes torque at a loop's ends, or at which
+    load the stiffness is as simulated. That the prior prefers larger springs is no evidence of the smaller.
     """
-    evidence, best = identified.search.evidence, identified.best
-    others = list(_but_for_a_spring(evidence, best))
-    sizes = [fit_regressors(evidence, terms).magnitudes()[SERIES] for terms in others]
-    off = np.array(sizes) - magnitude
-    return float(np.sqrt((off**2).sum() / (1 + len(off))))
-
-
-def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
-    """Sets with a term's shape replaced by one that leaves the spring another size."""
     at = {t.shape_key: i for i, t in enumerate(evidence.terms)}
     for place, i in enumerate(best.terms):
         term = evidence.terms[i]
@@ -105,11 +106,12 @@ def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[t
         for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
             other = at.get(shape_key(term.owner, shape))
             if other is not None:
-                yield (*best.terms[:place], other, *best.terms[place + 1 :])
+                yield replace(best, terms=(*best.terms[:place], other, *best.terms[place + 1 :]))
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:
-    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
+    """Standard deviation of a loop's width at T = 0 by the rows next to it: a difference of two means, each
+    of half of the rows."""
     history = evidence.columns.rig.history
     near = np.abs(history.torque_Nm) < NEAR_ZERO * history.largest_Nm
     rows = max(1, int((near & evidence.kept).sum()))

@@ -1,4 +1,4 @@
-"""Whether the gap follows the temperature late, and what that leaves open of its size."""
+"""Whether the gap follows the temperature late, and the uncertainty of its size by that."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def thermal_lag(identified: Identification) -> ThermalLag | None:
 
 
 def lag_std(identified: Identification, magnitude: float) -> float:
-    """Of the size of a gap that follows temperature, by how far other lags, and none, leave it another one.
+    """Standard deviation of a thermal gap's size, by the sizes that other lags, and no lag, give it.
 
     Each counts by its score, over all that were tried of one element, the rest of the best set as it is.
     """

@@ -1,4 +1,4 @@
-"""Flexible functions of a channel: smooth, periodic, or free level by level."""
+"""Flexible functions of a channel: smooth, periodic, or with a free value at each level."""
 
 from __future__ import annotations
 

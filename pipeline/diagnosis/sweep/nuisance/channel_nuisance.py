@@ -31,12 +31,12 @@ STEADY_K = 0.6
 """A temperature that varies by less is constant: at either end a usual sensor is within ±0.3 K (IEC 60751,
 class B, at 0 °C), and a metal's stiffness changes by 0.03 %/K."""
 LEAST_BENT = 0.02
-"""Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
+"""Share of the square's own size. If temperatures lie at two levels or close together, no bend is visible."""
 TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
 DEGREES = (1, 2, 3)
-"""Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
+"""Degrees of the polynomial in time of a changing stiffness: steady, with a bend, with a turn."""
 
 
 def _passed(rig: FitContext) -> np.ndarray | None:
@@ -68,7 +68,7 @@ def changing_stiffness(rig: FitContext) -> Made:
 
 
 def waves_and_steps(rig: FitContext) -> Made:
-    """Zeros that swing, or jump once in one unit."""
+    """Zeros that oscillate, or jump once in one unit."""
     t = _passed(rig)
     if t is None:
         return
@@ -88,7 +88,7 @@ def step_from(rig: FitContext, row: int) -> Made:
 
 
 def over_cycle(rig: FitContext) -> Made:
-    """Zero, stiffness and gap of each cycle's own, and stiffness that changes steadily or slowing down."""
+    """Zero, stiffness and gap of each cycle, and a stiffness that changes steadily or ever more slowly."""
     if rig.cycles < 2:
         return
     own = levels(rig.history.cycle.astype(float))

@@ -47,7 +47,8 @@ NUISANCE_SPREAD, SLIGHT_SPREAD = 0.15, 0.015
 """Prior sizes of an amplitude, as shares of the predicted angle. Of many zeros each costs the log of its
 prior over what is known of it: at the usual size twenty would hide a scatter of a third of the noise."""
 NEW_SHARE = 0.25
-"""Of a column's own size: one of which less is new beside torque and gap is no nuisance term."""
+"""Least part of a column beside torque and gap, over its size. A column with less is not a nuisance term.
+Judgement."""
 LEAST_COLUMN = 1e-9
 """Rms of a column about its mean, in its own unit (1, N·m, °C): below, it is constant but for rounding."""
 

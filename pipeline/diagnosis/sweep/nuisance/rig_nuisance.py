@@ -20,16 +20,18 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.nuisance.torque_nuisance import Made
 
 YIELDS = (0.4, 0.55, 0.7, 0.85)
-"""Of the largest torque: where a lock gives way. Lower, the gear's own friction does the same."""
+"""Torques at which a lock gives way, over the largest torque. At lower ones the gear's own friction has the
+same effect."""
 MOST_LOADS = 40
-"""Loads with a way of their own each; where there are more, all follow one law."""
+"""Most loads of a record in which each load has its own displacement. With more, all follow one law.
+Judgement: it limits the columns."""
 DAMPING_AND_PERIOD_RATIOS = ((0.05, 1.12), (0.12, 1.3))
 """Damping ratio, and ratio of neighbouring periods: a ring of damping ζ lasts 1/(2πζ) periods, within which
 neighbours so near drift apart by less than a sixth of a turn."""
 FEWEST_PERIOD_ROWS = 3.0
-"""Of a period: of fewer, rows do not follow it."""
+"""Fewest rows of a period. With fewer, rows do not follow it."""
 LONGEST_PERIOD, LONGEST_HELD_PERIOD = 0.5, 1.0
-"""Of a ramp, of a hold: what swings more slowly does not ring in it."""
+"""Longest period over a ramp, and over a hold. A slower oscillation does not ring in it."""
 FINEST_PART = 0.1
 """Of the rows: so many are sampled finely enough for the shortest period tried. Of cycles at several rates
 the quickest ring most."""

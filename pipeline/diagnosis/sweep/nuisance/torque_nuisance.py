@@ -21,9 +21,9 @@ from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import smooth, wave
 
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
-"""Shares of the largest torque, within those of `friction_hysteresis`, which they reverse."""
+"""Thresholds over the largest torque. They lie within those of `friction_hysteresis`, which they reverse."""
 LEADING_LAGS = (0.05, 0.15, 0.4)
-"""Time constants as shares of a ramp, within those of `rate_dependence`, which they reverse."""
+"""Time constants over a ramp. They lie within those of `rate_dependence`, which they reverse."""
 SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 """Powers of torque, all above 1: twist grows faster than torque."""
 RIPPLES = range(3, 33)
@@ -69,7 +69,7 @@ def _ripples(x: np.ndarray, channel: str) -> Made:
 
 
 def over_direction(rig: FitContext) -> Made:
-    """A loop wider on one side of zero than on the other: friction elements make none such."""
+    """A loop that is wider on one side of zero than on the other, which friction elements cannot produce."""
     torque = rig.history.torque_Nm / rig.largest_Nm
     direction = direction_of_loading(rig.history)
     basis = np.column_stack([direction * torque, direction * torque**3])
@@ -77,7 +77,7 @@ def over_direction(rig: FitContext) -> Made:
 
 
 def leading(rig: FitContext) -> Made:
-    """Loops run through the wrong way round: friction and lag with their sign reversed."""
+    """Loops in the reverse sense: friction and lag with their sign reversed."""
     yield "direction", UnnamedForm("leading"), direction_of_loading(rig.history)[:, None]
     thresholds = np.array(LEADING_THRESHOLDS) * rig.largest_Nm
     torque = steadied(rig.history, deadband_Nm(rig.history))

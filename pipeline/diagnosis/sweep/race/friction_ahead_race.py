@@ -64,7 +64,8 @@ AHEAD_SETTLED_SHARE, SETTLED_LOG = 0.003, 0.3
 """Friction found again within this of the largest torque, and its stiffness ratio within this of its log, is
 the last: neither moves what counts."""
 AHEAD_NATS = 9.0
-"""Nats over none: odds of 8000 to 1, twice what a cause costs; as for an offset of the torque reading."""
+"""[nats] Least evidence over none: odds of 8000 to 1, twice what a cause costs; as for an offset of the
+torque reading."""
 SURE_NATS = 30.0
 """Nats of the step's place by which it needs no race without it to be sure, beyond what it leaves to terms
 without a name, to which such a race might give one: of 220 made-up records without

@@ -28,18 +28,18 @@ from flexspline.pipeline.diagnosis.sweep.evidence.regressors import NOISE_COLUMN
 from flexspline.pipeline.diagnosis.sweep.evidence.shape_tuning import ENOUGH_NATS
 
 AHEAD_STEPS = 8
-"""At most; from a guess within 1 % of the largest torque, four are usual."""
+"""Most steps. From a guess within 1 % of the largest torque, four are usual."""
 LONGEST_LOG_STEPS = (0.25, 1.2)
 """Of a step, in the logarithms of friction torque and stiffness ratio: a quarter of the one, a factor of
 three of the other, which changes the loop less. Half or twice as long, no verdict of the 8 records of
 `ahead_race.AHEAD_RACES` changes."""
 LOG_DIFFERENCES = (0.01, 0.1)
-"""Of the logarithms, for slopes."""
+"""Steps of the two logarithms, for slopes. Judgement: the loop changes less with the second."""
 STIFFNESS_RATIO, RATIO_STD = 30.0, 1.5
 """Of a bearing before it slips against the gear: seals 3, rolling bearings 300, by judgement; the prior of
 its log."""
 AHEAD_STEP_SHARES = (1.0, 0.35, 0.1)
-"""Of a step: whole, and less where that loses."""
+"""Shares of a step that are tried: all of it, and less if that loses evidence. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The race on a prepared sweep: which set of regressors explains it best, and what that set identifies.
+"""The race on a prepared sweep: which set of regressors explains it best, and which causes it identifies.
 
 The first round takes the noise of a local polynomial, each further one that of what the best set leaves,
 until the two agree: a polynomial passes effects for noise and slow noise for an effect. A noise that grew and
@@ -53,7 +53,7 @@ TUNED_LAWS = 2
 """Sets of the same causes by other laws that are tuned beside the best one: for the doubt of sizes, not for
 verdicts, of which 0, 1 or 4 change none of those 12."""
 NOISE_ROUNDS = 4
-"""At most; records in which noise is found again more than once are few."""
+"""Most rounds of noise. Few records need more than one."""
 NOISE_ALIKE = 0.2
 """Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
 NOISE_FALLEN = 1.1
@@ -63,9 +63,9 @@ slow part's power too, where the variance falls with it: an effect was in the sl
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
-"""Of the best set's evidence: a cause that explains less by itself is not tuned alone."""
+"""Share of the best set's evidence. A cause that explains less by itself is not tuned alone. Judgement."""
 WORTH_TUNING = 1.0
-"""Nats that a round of tuning must gain for another one."""
+"""[nats] Least gain of a round of tuning after which another one follows. Judgement."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     for number in range(NOISE_ROUNDS):
         named = with_tuned_shapes(_evidence(prepared), is_named)
         search = Search(named.evidence)
-        # apart: beside a good start growth ends that goes on from nothing
+        # separately: beside a good start, a search ends early that would go on from nothing
         search.run()
         search.run([named.top.terms])
         best = search.exchanged()

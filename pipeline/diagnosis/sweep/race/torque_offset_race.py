@@ -29,7 +29,7 @@ records changes (`tests/hidden`, seed 77, every third of 34)."""
 SETTLED_STDS, OFFSET_SETTLED_SHARE = 0.5, 0.001
 """An offset found again within this of its standard deviations, or of the largest torque, is the last."""
 BESIDE_STEP = 0.01
-"""Of the largest torque: nearer to a step of the gap no row judges where the step is."""
+"""Share of the largest torque. Rows nearer to the gap's step do not decide where the step is."""
 OFFSET_NATS, OFFSET_SURE = 9.0, 20.0
 """Nats over no offset, of likelihood that takes the crossing's rows as independent: 9, odds of 8000 to 1, for
 an offset, twice what a cause costs; 20 where it is sure.

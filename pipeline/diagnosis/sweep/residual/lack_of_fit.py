@@ -22,11 +22,12 @@ from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import (
 from flexspline.pipeline.diagnosis.sweep.residual.rounding import rounding_left_arcsec
 
 PLACE_WIDTHS = (0.01, 0.02, 0.05)
-"""Of the largest torque: a place is so wide; the first that gives no more than `MOST_TORQUE_PLACES`."""
+"""Widths of a place over the largest torque. The first that gives no more than `MOST_TORQUE_PLACES` is
+used."""
 MOST_TORQUE_PLACES = 120
-"""Fifty steps of torque on two branches, and some more."""
+"""Most places: fifty steps of torque on two branches, and some more."""
 FEWEST_RETURNS = 3
-"""In which torque comes to a place: of two cycles one may be the odd one."""
+"""Fewest cycles in which torque comes to a place. Of two, one may be unusual."""
 
 
 def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | None:

@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import poste
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 
 LEAST_CHI_SQUARE = 1e-9
-"""χ²: causes that explain less explain nothing."""
+"""[χ²] Causes that explain less explain nothing: rounding."""
 
 
 def unnamed_share(identified: Identification, told: Collection[str]) -> float:

@@ -1,4 +1,4 @@
-"""What the best model leaves, tested in every channel."""
+"""Tests of the best model's residual in every channel."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.multiple_tests import p_value_of_best
 
 RANK_SHARE = 1e-3
-"""Of the largest singular value: bins that the model's terms can be count for nothing."""
+"""Share of the largest singular value. Smaller ones belong to bins that the model's terms can reproduce,
+which do not count."""
 CHANNEL_BINS = 12
 """Of a channel: 8 or 20 change no verdict of 12 made-up records (`tests/hidden`, seed 77,
 every third of 34)."""
@@ -24,7 +25,8 @@ FEWEST_PER_BIN = 5
 APART_TORQUES = 4.0
 """Largest torques by which the two directions of loading are moved apart: each spans two."""
 STEADY_SIGMAS = 3.0
-"""Deviations of the torque's noise within which bins of torque do not follow the reading."""
+"""Standard deviations of the torque's noise within which bins of torque do not follow the reading.
+Judgement."""
 STRUCTURE_P_VALUE = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested, so that noise alone has one
 said in a record of 1200. 1e-3 changes no verdict of those 12 records, nothing held out."""

@@ -1,4 +1,4 @@
-"""What the rounding of both readings leaves in the angle: a saw-tooth, the same at every pass."""
+"""Error in the angle by the rounding of both readings: a saw-tooth, the same at every pass."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
 FINEST_ENCODER = 1e-5
 """Step over the twist's span: finer ones, 29 bits a turn at 200 arcsec, are a file's last digits."""
 NOISE_SHARE = 0.5
-"""Of the variance of white noise: what rounding leaves less of is not seen among it."""
+"""Share of the variance of white noise. If rounding leaves less, it is not visible in the noise."""
 
 
 @dataclass(frozen=True)

@@ -17,18 +17,19 @@ from flexspline.pipeline.diagnosis.sweep.residual.stick_slip_skewness import Jum
 STUCK_BLOCK_ROWS = (1, 2, 4, 8, 16)
 """Rows whose means are compared from block to block: a saw-tooth may be longer than a row."""
 FEWEST_STEPS = 10
-"""Of either kind: a variance of ten is known to within a half."""
+"""Fewest steps of either kind. A variance of ten steps is known to within a half."""
 HOLD_PARTS = 4
-"""Of a hold, whose means say how well the hold's own is known."""
+"""Parts of a hold. The scatter of their means shows how well the mean of the hold is known."""
 FEWEST_STUCK_HOLDS = 4
-"""Three degrees of freedom of where they lie."""
+"""Fewest holds: three degrees of freedom for their scatter."""
 EITHER_P_VALUE = 1e-3
 """p-value of each of the two tests: noise slower than a row passes the one by any margin and vibration the
 other, so that the other alone must hold them off. With 1e-2 a clean record of 49 was said to stick."""
 CORRELATION_FACTOR = 1.5
 """Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
 LEAST_LOG_VARIANCE = 1e-12
-"""Of the logarithm of a ratio of squared steps: steps that are all alike scatter by rounding alone."""
+"""Least variance of the logarithm of a ratio of squared steps. If all steps are equal, only rounding
+scatters."""
 
 
 def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:

@@ -23,9 +23,9 @@ REACHES = (0.015, 0.04, 0.1)
 """Shares of the largest torque within which what sticks is forgotten: a factor of 2.6 apart, within which
 exp(−s) and exp(−2.6 s) still have 92 % in common. A misfit of a smooth law is longer."""
 FARTHEST = 16
-"""Rows between the two of a pair at the most: more of a hold's say the same again."""
+"""Most rows between the two of a pair. Farther pairs of a hold add no information."""
 TIME_DEGREE = 3
-"""Of the polynomial in the time between two rows that noise of any colour is taken for."""
+"""Degree of the polynomial in the time between two rows that represents noise of any colour. Judgement."""
 SINGULAR_RATIO = 1e-9
 """Of the largest singular value: rows evenly in time have one time between them."""
 MOST_OF_RESIDUAL = 2.0

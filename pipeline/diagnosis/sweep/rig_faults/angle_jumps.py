@@ -13,7 +13,8 @@ from flexspline.pipeline.diagnosis.shortage import Leaps
 LEAP_RATIO = 10.0
 """Times the median move between two rows: of normal noise one move in 70 billion goes so far."""
 FEWEST_LEAPS = 3
-"""Leaps, all with the torque: one may be a touch of the rig; spikes go there and back."""
+"""Fewest leaps, all in the torque's direction. A single one may be a touch of the rig; spikes go there and
+back."""
 
 
 def leaps_of(history: History, angle_arcsec: np.ndarray) -> Leaps | None:

@@ -26,7 +26,7 @@ from flexspline.pipeline.diagnosis.sweep.rig_faults.half_cycles import HalfCycle
 from flexspline.pipeline.diagnosis.sweep.rig_faults.torque_delay import torque_delay_s
 
 FEWEST_LOOPS = 2
-"""What happens once may be a jolt."""
+"""Fewest backward loops. A single one may be a jolt."""
 BACKWARD_SHARE, LOAD_DEVIATIONS = 0.9, 2.0
 """Of the loads that must not run forwards, by so many standard deviations each: noise may turn a few."""
 BACKWARD_DEVIATIONS = 4.0

@@ -1,7 +1,7 @@
 """Whether something gives way under torque: a lock, a clamp or a friction joint that slips.
 
-What springs comes back: when torque has risen beyond a share of its largest value and falls below it again,
-the angle is where it was, but for the width of a friction loop. What slips stays.
+Elastic twist comes back: when torque has risen beyond a share of its largest value and falls below it again,
+the angle is where it was, but for the width of a friction loop. A slip stays.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.structure import Slip
 
 LOADED_SHARE = 0.6
-"""Of the largest torque: beyond it the gear is loaded, below it the gap is crossed."""
+"""Share of the largest torque. Beyond it the gear is loaded, below it the gap is crossed. Judgement."""
 MOST_TIMES = 5.0
 """Of the twist between `LOADED_SHARE` and the largest torque: a friction loop as wide as half the whole twist
 has 1.25, one as wide as all of it 2.5."""

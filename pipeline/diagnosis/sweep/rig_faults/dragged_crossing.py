@@ -43,7 +43,7 @@ SPREADS, SPREADS_TRIED = (0.004, 0.4), 10
 """Torques in which the usual ramp crosses the gap, as shares of the largest torque: from less than a row's to
 most of a ramp; each 1.67 times the one before."""
 FINE_TRIED = 9
-"""Of each, between the neighbours of the best one."""
+"""Values of each that are tried between the neighbours of the best one."""
 SAME_DEVIATIONS = 3.0
 """Deviations up to which the race's friction is the same beside drag: one in 370 differs more by chance."""
 

@@ -11,11 +11,11 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import cycle_rates
 
 FEWEST_LOAD_ROWS = 8
-"""Of a load, on one side of the gap: four each way."""
+"""Fewest rows of a load on one side of the gap: four each way. Judgement."""
 OPEN_SHARE = 0.1
-"""Of the way up: a load whose way down differs by more has not ended."""
+"""Relative difference of the way down from the way up. With more, the load has not ended. Judgement."""
 ONE_SIZE = 0.05
-"""Relative difference up to which loads have one amplitude, or one rate."""
+"""Relative difference up to which loads have the same amplitude, or the same rate. Judgement."""
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ COARSE_EVERY = 3
 """Of the forms, every third is tried at first: where no late angle is the best of these, none is. Else those
 beside the best of each kind are tried too."""
 COARSE_ROWS = 1000
-"""Rows looked at meanwhile: enough to tell forms that lie three steps apart."""
+"""Rows used in this first search: enough to distinguish forms that are three steps apart."""
 FINE_TIMES = 9
 """Times tried between two neighbours of the first search."""
 TO_NEIGHBOUR = 1.2

@@ -12,11 +12,11 @@ from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, crossing_of
 
 PARTS = 3
-"""Of a unit's rows: the place of the crossing in the first is held against that in the last."""
+"""Parts of a unit's rows. The place of the crossing in the first part is compared with that in the last."""
 MOVED_SIGMAS = 4.0
 """Deviations by which it must differ: chance alone does it once in 16 000 records."""
 MADE_SHARE = 0.5
-"""Of the drift between the two parts, what the twist of the moved zero must make."""
+"""Least share of the drift between the two parts that the twist of the moved zero must explain. Judgement."""
 
 
 def zero_moves(explained: ExplainedSweep) -> bool:

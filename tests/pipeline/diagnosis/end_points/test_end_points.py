@@ -256,7 +256,7 @@ def test_rows_judged_are_those_of_the_file(monkeypatch: pytest.MonkeyPatch) -> N
     assert gain is not None
     rows = np.array(gain.held_out_rows)
     assert 8 <= len(rows) < 24
-    total = (made.angle_plus_arcsec - made.angle_minus_arcsec)[rows]
+    total = made.total_arcsec[rows]
     off = total - 2 * made.torque_Nm[rows] * PREDICTION.compliance - PREDICTION.gap_arcsec
     assert np.sqrt(np.mean(off**2)) == pytest.approx(gain.rmse_before)
 
