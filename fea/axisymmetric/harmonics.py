@@ -145,7 +145,7 @@ class HarmonicModel:
 
         Components that the harmonic does not have are left empty.
         """
-        return wave.around * self.couplings.stiffness(wave.n, wave.components)
+        return self.couplings.stiffness(wave.n, wave.components, wave.around)
 
     def on(self, patch: str) -> np.ndarray:
         """P2 numbers on a patch."""
