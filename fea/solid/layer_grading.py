@@ -8,9 +8,9 @@ import numpy as np
 
 from flexspline.fea.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.bisect import Simplices, halved
-from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
 from flexspline.fea.solid.layers import RING_STEP
 from flexspline.fea.solid.polar import cartesian, middles, polar
+from flexspline.fea.solid.seams import Seams, distance_from, seams_of
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import snap_to_surfaces, undo_inverted
 from flexspline.geometry.surfaces import Surface

@@ -12,8 +12,7 @@ from math import inf, radians
 import numpy as np
 
 from flexspline.fea.solid.bisectable import BisectableMesh
-from flexspline.fea.solid.layer_curving import quadratic
-from flexspline.fea.solid.layer_edges import seams_of
+from flexspline.fea.solid.curving import quadratic
 from flexspline.fea.solid.layer_grading import graded
 from flexspline.fea.solid.layer_mesh import coarsest
 from flexspline.fea.solid.layer_sizes import face_area, volume, wall_area
@@ -21,6 +20,7 @@ from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.mesh_checks import VOLUME, check_sizes
 from flexspline.fea.solid.polar import cartesian, polar
+from flexspline.fea.solid.seams import seams_of
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import common_point
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
