@@ -87,11 +87,13 @@ NOT_OURS = (
     "moment na vstupu [Nm]", "给定扭矩 [Nm]", "設定トルク [Nm]", "požadovaný moment [Nm]", "最大扭矩 [Nm]",
     "摩擦力矩 [Nm]", "サイクル時間 (s)", "čas cyklu (s)", "剩余时间 (s)", "残り時間 (s)",
     "扭转角 标准差 (arcsec)", "角速度 [deg/s]", "仿真转角 [arcsec]",
-    "Torque (Min)", "Torque Min", "Angle (MAX)", "Taktzeit [s]", "Zykluszeit [s]", "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
+    "Torque (Min)", "Torque Min", "Angle (MAX)", "Taktzeit [s]", "Zykluszeit [s]",
+    "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
 )  # fmt: skip
 NO_UNIT = {
     "torque": "", "Drehmoment": "", "torque_lbf": "lbf", "Torque [lbf]": "lbf",
-    "Torque [kg]": "kg", "Torque [lb/in]": "lb/in", "Torque [m-N]": "m-N", "angle_min": "min", "Time [MS]": "MS",
+    "Torque [kg]": "kg", "Torque [lb/in]": "lb/in", "Torque [m-N]": "m-N", "angle_min": "min",
+    "Time [MS]": "MS",
     "Angle [grad]": "grad", "Temp [F]": "F", "Torque [deg]": "deg", "Torque [MNm]": "MNm",
     "Torque [MN-m]": "MN-m", "Torque (MNM)": "", "Torque [MNM]": "MNM", "Angle [GRAD]": "GRAD",
     "角度[角X]": "角X",
