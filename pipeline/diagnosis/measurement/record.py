@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
+from flexspline.pipeline.diagnosis.measurement.lost_readings import LostReadings
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
@@ -75,6 +76,8 @@ class Sweep:
     """Readings whose rows were left out."""
     held_rows: int = 0
     """Rows left out, as a slow channel's angle repeats the one before."""
+    lost: LostReadings | None = None
+    """Rows left out, in which torque or angle was not recorded."""
     went_to: np.ndarray | None = None
     """Of each data row of the file, the row here that it is or went into, −1 where it was left out; None
     where the rows are those of the file."""
@@ -151,7 +154,7 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
     ------
     MeasurementError : unreadable, no known kind, or values that cannot be.
     """
-    table = read_table(path, counts_per_turn)
+    table = read_table(path, counts_per_turn, leave_out=True)
     if table.has("stiffness_Nm_per_rad") and _names(table, "specimen", "unit"):
         return _specimens(table)
     if table.has("angle_plus_arcsec", "angle_minus_arcsec"):
@@ -208,15 +211,16 @@ def _sweep(as_read: MeasuredTable) -> Sweep:
     return Sweep(
         table.path, history, table.numbers["angle_arcsec"], found.units, found.cycles,
         table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
-        held_rows=int(held.sum()), went_to=went_to,
+        held_rows=int(held.sum()), went_to=went_to, lost=as_read.lost,
     )  # fmt: skip
 
 
 def _went_to(as_read: MeasuredTable, left: MeasuredTable) -> np.ndarray | None:
     """The row that is `left` of each row read, −1 of none; None where all are left. A line is a row."""
-    if len(left) == len(as_read):
+    lost = () if as_read.lost is None else as_read.lost.lines
+    if len(left) == len(as_read) and not lost:
         return None
-    stays = np.isin(as_read.line, left.line)
+    stays = np.isin(np.sort([*as_read.line, *lost]), left.line)
     return np.where(stays, np.cumsum(stays) - 1, -1)
 
 
