@@ -61,11 +61,12 @@ def too_large_line(design: Design, estimate: bool = True) -> str:
     f, first = design.flexspline, design.shaft.segment[0]
     split = min(SPLIT_MM, first.length_mm / 2)
     rest = first.length_mm - split
+    holes = " (its bolt holes then end there)" if design.shaft.bolt_count else ""
     return (
         f"K_e is {why_too_large(design, estimate)}; its bounds do not count that, and it may change with "
         "shaft.segment[0].length_mm the wrong way. Remedy: split the first [[shaft.segment]] into one with "
-        f"length_mm = {split:g} and inner_diameter_mm = {f.size(f.land.inner):g} (flexspline.{f.land.inner}) "
-        f"and one with length_mm = {rest:g} and the old diameters"
+        f"length_mm = {split:g} and inner_diameter_mm = {f.size(f.land.inner):g} (flexspline.{f.land.inner})"
+        f"{holes} and one with length_mm = {rest:g} and the old diameters"
     )
 
 
