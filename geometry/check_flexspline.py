@@ -19,10 +19,14 @@ from flexspline.geometry.bounds import (
 from flexspline.geometry.check_bolts import bolt_faults
 from flexspline.geometry.check_fillets import PREFIX, fault, fillet_faults
 from flexspline.geometry.culprits import culprits
-from flexspline.geometry.errors import DesignError
+from flexspline.geometry.errors import DesignError, plain_number
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
 from flexspline.geometry.shapes import Flexspline
+
+LONGEST_WALLS = 3000
+"""Of a tube's length, in walls: usual ones have 8 to 280. One layer of triangles across the wall are as many
+along it; of 3000 all figures took 56 s, of 5000 two minutes, of 15 000 each first mesh alone 17 s."""
 
 
 def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:
@@ -33,6 +37,7 @@ def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[D
     """
     wrong = list(culprits(f))
     yield from wrong
+    yield from _slender_faults(f)
     ring = list(_ring_faults(f, teeth))
     end = list(_inside_faults(f) if f.inward else _outside_faults(f, not ring))
     yield from ring
@@ -41,6 +46,18 @@ def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[D
         yield from fillet_faults(f)
     inner, outer = f.land.inner, f.land.outer
     yield from bolt_faults(PREFIX, f, (inner, f.size(inner)), (outer, f.size(outer)))
+
+
+def _slender_faults(f: Flexspline) -> Iterator[DesignError]:
+    most, least = LONGEST_WALLS * f.wall_thickness_mm, f.length_mm / LONGEST_WALLS
+    if upto(most) < f.length_mm <= LENGTH_mm.high:
+        yield fault(
+            f,
+            "length_mm",
+            f"must be {lengths(0, upto(most))} mm: up to {LONGEST_WALLS} times wall_thickness_mm = "
+            f"{f.wall_thickness_mm:g}, as no gear has a longer tube and its mesh takes minutes; or make that "
+            f"at least {plain_number(least, 4)}",
+        )
 
 
 def _ring_faults(f: Flexspline, teeth: Interval) -> Iterator[DesignError]:

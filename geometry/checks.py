@@ -18,7 +18,13 @@ from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
-from flexspline.geometry.module_fit import MM_PER_M, diameter_in_metres, module_hint
+from flexspline.geometry.module_fit import (
+    MM_PER_M,
+    diameter_in_metres,
+    fitting_module_mm,
+    fitting_modules_mm,
+    module_hint,
+)
 from flexspline.geometry.play_limit import beyond_play_limit
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
@@ -43,12 +49,14 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from flexspline_faults(design.flexspline, ring_ends(design))
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
+    yield from _module_faults(design)
     yield from _metre_faults(design)
     yield from tooth_faults(design)
     yield from _clearance_faults(design)
     yield from _play_faults(design)
     yield from wave_generator_faults(design)
-    yield from rated_faults(design)
+    if not module_hint(design):
+        yield from rated_faults(design)
     yield from circular_spline_faults(design)
     yield from _solver_faults(design)
 
@@ -78,6 +86,23 @@ def _gear_faults(design: Design) -> Iterator[DesignError]:
             f"must be {', '.join(str(n) for n in (z1 + 2, z1 + 4) if n <= TEETH.high)}, …: "
             f"teeth_flexspline = {z1} plus an even number for the two lobes",
         )
+
+
+def _module_faults(design: Design) -> Iterator[DesignError]:
+    """A rated torque is judged by the pitch radius: where the module makes it that no gear of that size has,
+    but the ring asks for another module, the module is wrong first."""
+    if not module_hint(design) or not any(rated_faults(design)):
+        return
+    low, high = fitting_modules_mm(design)
+    yield DesignError(
+        "gear.module_mm",
+        design.gear.module_mm,
+        f"must be from {low:.2g} to {high:.2g} mm with {design.gear.teeth_flexspline} teeth on a ring of "
+        f"{2 * design.flexspline.ring_radius:.4g} mm, some {fitting_module_mm(design):.2g}; else no "
+        f"gear of that size has gear.rated_torque_Nm = {design.gear.rated_torque_Nm:g}",
+    )
+    fitting = design.gear.model_copy(update={"module_mm": fitting_module_mm(design)})
+    yield from rated_faults(design.model_copy(update={"gear": fitting}))
 
 
 def _metre_faults(design: Design) -> Iterator[DesignError]:

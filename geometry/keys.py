@@ -54,8 +54,10 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     tables = design.tables
     for key, value in values.items():
         table, last = _reach(tables, key, value)
-        if getattr(value, "shape", None) == ():  # numpy's numbers
-            value = value.item()  # type: ignore[attr-defined]
+        if hasattr(
+            value, "tolist"
+        ):  # numpy's numbers, and its arrays, which are refused as lists are
+            value = value.tolist()
         # what the file does not state may be a whole number as well
         if isinstance(table.get(last, 0), int) and isinstance(value, float) and value.is_integer():
             value = int(value)

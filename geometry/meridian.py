@@ -61,3 +61,15 @@ def with_narrow_seat(outline: Meridian, share: float) -> Meridian:
         a, b, c, d = (pair(p) for p in at)
         found += [Segment(a, b), Segment(b, c, patch="seat"), Segment(c, d)]
     return Meridian(tuple(found), outline.cuts)
+
+
+def with_mount_from(outline: Meridian, radius_mm: float) -> Meridian:
+    """The same body whose `mount`, a flat face, is held only from a radius outwards."""
+    found: list[Segment] = []
+    for s in outline.segments:
+        if s.patch == "mount" and s.start[0] < radius_mm < s.end[0]:
+            edge = (radius_mm, s.start[1])
+            found += [Segment(s.start, edge), Segment(edge, s.end, patch="mount")]
+        else:
+            found.append(s)
+    return Meridian(tuple(found), outline.cuts)

@@ -31,6 +31,12 @@ def fitting_module_mm(design: Design) -> float:
     return design.flexspline.ring_radius / root_radius_mm(design) * design.gear.module_mm
 
 
+def fitting_modules_mm(design: Design) -> tuple[float, float]:
+    """The least and the largest that may belong to the ring."""
+    middle = fitting_module_mm(design)
+    return middle / WRONG_MODULE_RATIO, middle * WRONG_MODULE_RATIO
+
+
 def module_hint(design: Design) -> str:
     """The module, where it is far from what the rest of the ring asks for; else ""."""
     root, ring = root_radius_mm(design), design.flexspline.ring_radius

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.listed import joined
 from flexspline.geometry.near_key import nearest_key
+from flexspline.geometry.other_unit import other_unit
 from flexspline.geometry.schema import Location, allowed, dotted, keys_of
 from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.toml_read import number_help
@@ -59,6 +60,8 @@ def _is_wrong_type(e: ErrorDetails) -> bool:
 
 def unknown_key(key: str, known: Sequence[str], table: str) -> str:
     """Why a key is refused that `table` does not have: the known one it is like, or all of them."""
+    if (meant := other_unit(key, known)) is not None:
+        return f"unknown key; did you mean {meant.key}? {meant.how}"
     near = nearest_key(key, known)
     hint = f"did you mean {near}?" if near else f"{table} takes {', '.join(known)}"
     return f"unknown key; {hint}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.input_file import file_name
 from flexspline.geometry.part_name import PART_NAMES, PartName
-from flexspline.pipeline.given import require_design
+from flexspline.pipeline.given import require_design, warn_of_first_face
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 
 if TYPE_CHECKING:
@@ -71,6 +71,8 @@ def stiffness(
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
     model = analysis_context(design).part(part)
     if case == "uniform":
+        if part == "shaft":
+            warn_of_first_face(design)
         return part_stiffness(model)
     if part == "shaft":
         raise DesignError("case", case, 'applies to the flexspline; the shaft has "uniform" only')
@@ -147,6 +149,8 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     if used is None:
         from flexspline.pipeline.analysis import analysis_context
 
+        if K_e is None:
+            warn_of_first_face(design)
         used = stiffness_pair(analysis_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
 
@@ -178,6 +182,7 @@ def gear(design: Design) -> GearCurve:
     from flexspline.pipeline.gear.gear_curve import gear_curve
 
     require_design(design)
+    warn_of_first_face(design)
     return gear_curve(analysis_context(design))
 
 
@@ -200,6 +205,7 @@ def sensitivity(design: Design) -> tuple[Slope, ...]:
     from flexspline.pipeline.study.sensitivity import sensitivities
 
     require_design(design)
+    warn_of_first_face(design)
     return sensitivities(design, lambda line: None)
 
 

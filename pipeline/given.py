@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 from warnings import warn
 
 from flexspline.geometry.errors import FlexsplineError, short
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
 
 
 class NoDesignError(FlexsplineError, TypeError):
@@ -50,3 +54,11 @@ def require_design(given: object) -> None:
         raise NoDesignError(given)
     for unusual in unusual_in(design_from(given.tables)):
         warn(unusual, DesignWarning, stacklevel=3)
+
+
+def warn_of_first_face(design: Design) -> None:
+    """That K_e is too large, as a `DesignWarning` at the same line."""
+    from flexspline.pipeline.first_face import too_large_lines
+
+    for line in too_large_lines(design):
+        warn(line, DesignWarning, stacklevel=3)

@@ -142,7 +142,8 @@ def present(job: Job, record: dict[str, Any], as_json: bool) -> None:
     if as_json:
         show(text(record), as_json)
     else:
-        show(table(record, job.folder, stiffness_notes(job.design)))
+        notes = stiffness_notes(job.design) if "K_e_Nm_per_rad" in record else {}
+        show(table(record, job.folder, notes))
 
 
 def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:

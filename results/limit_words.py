@@ -21,13 +21,9 @@ NOT_SOLVED = (
 
 def stiffness_notes(design: Design) -> dict[str, str]:
     """What must be said beside a stiffness, by its key of result.json."""
-    f = design.flexspline
-    touched = f.size(f.land.inner)
-    if f.inward or design.shaft.segment[0].inner_diameter_mm >= touched:
-        return {}
-    return {
-        "K_e_Nm_per_rad": "too large: held on its whole first face, not only under the hat's flange"
-    }
+    from flexspline.pipeline.first_face import held_beyond_flange, why_too_large
+
+    return {"K_e_Nm_per_rad": why_too_large(design)} if held_beyond_flange(design) else {}
 
 
 def beside_figure(passed: PassedLimit) -> str:

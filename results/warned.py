@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import ON_ELLIPSE, ON_HALF_SEAT, PEAK_OF, limits_passed
 from flexspline.results.gear_words import gear_warnings
-from flexspline.results.limit_words import load_beyond, passed_line, stiffness_notes
+from flexspline.results.limit_words import load_beyond, passed_line
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
@@ -76,12 +76,10 @@ def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
             )
 
 
-def _beyond_bounds(design: Design, found: Stiffnesses) -> Iterator[str]:
-    notes = stiffness_notes(design)
-    for name in found.solved:
-        if note := notes.get(f"{name}_Nm_per_rad"):
-            symbol = quantity(f"{name}_Nm_per_rad").symbol
-            yield f"{symbol} is {note}; its bounds do not count that"
+def _beyond_bounds(design: Design, found: Stiffnesses) -> tuple[str, ...]:
+    from flexspline.pipeline.first_face import too_large_lines
+
+    return too_large_lines(design) if "K_e" in found.solved else ()
 
 
 def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:

@@ -230,6 +230,13 @@ def test_numpy_s_numbers_are_numbers(value: object) -> None:
         design.changed({"shaft.keyway.width_mm": value})
 
 
+@pytest.mark.parametrize("value", [np.array([0.7, 0.8]), np.array([0.7]), [0.7, 0.8]])
+def test_several_numbers_are_refused_as_a_list(value: object) -> None:
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
+    with pytest.raises(flexspline.FlexsplineError, match=r"must be a number from .*, not a list$"):
+        design.changed({"flexspline.wall_thickness_mm": value})
+
+
 def test_a_diagnosis_is_shown_in_short_and_goes_to_another_process(
     diagnosed: Any,
 ) -> None:

@@ -49,9 +49,10 @@ def _rows(prepared: PreparedSweep, rows: int) -> dict[str, Any]:
     """By their use; `rows` of all units, of which `prepared` may be one."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
     wrong, held = sum(w.rows_left_out for w in prepared.sweep.wrong), prepared.sweep.held_rows
+    lost = 0 if prepared.sweep.lost is None else len(prepared.sweep.lost.lines)
     measured = counts.total if averaging is None else averaging.rows_read
     others = rows - measured
-    record: dict[str, Any] = {"read": rows + wrong + held}
+    record: dict[str, Any] = {"read": rows + wrong + held + lost}
     if averaging is not None:
         record |= {"averaged": averaging.rows_averaged, "means": counts.total}
     return record | {
@@ -62,6 +63,7 @@ def _rows(prepared: PreparedSweep, rows: int) -> dict[str, Any]:
             "before_first_reversal": counts.settling,
             "outlier": counts.outliers + wrong,
             **({"held_reading": held} if held else {}),
+            **({"lost_reading": lost} if lost else {}),
             **({"other_units": others} if others else {}),
         },
     }

@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
-from flexspline.results.diagnosis.reading import heads, reading_notes, wrong_notes
+from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
 from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
@@ -76,7 +76,8 @@ def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
     measured = diagnosis.measurement
     if not isinstance(measured, Sweep):
         return []
-    return [*wrong_notes(measured.wrong), *_held_rows(measured.held_rows)]
+    lost = [] if measured.lost is None else [lost_note(measured.lost)]
+    return [*lost, *wrong_notes(measured.wrong), *_held_rows(measured.held_rows)]
 
 
 def _held_rows(count: int) -> list[str]:

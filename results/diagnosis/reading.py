@@ -8,6 +8,7 @@ from typing import Any
 from flexspline.geometry.errors import one_line
 from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
+from flexspline.pipeline.diagnosis.measurement.lost_readings import LostReadings
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES, symbol
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
@@ -68,6 +69,16 @@ def reading_notes(read_as: ReadAs) -> list[str]:
 def wrong_notes(readings: Iterable[WrongReadings]) -> list[str]:
     """Readings taken as wrong: column, numbers and lines in the file."""
     return [_wrong_words(wrong) for wrong in readings]
+
+
+def lost_note(lost: LostReadings) -> str:
+    """Rows in which nothing was recorded: how many, and where."""
+    count = len(lost.lines)
+    s = "s" * (count > 1)
+    return (
+        f"{heads(lost.heads)} {'are' if len(lost.heads) > 1 else 'is'} empty in {count} of {lost.rows} rows "
+        f"(line{s} {listed(lost.lines, 'lines')}): left out; the other rows stay in order, at their times"
+    )
 
 
 def _wrong_words(wrong: WrongReadings) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PART_NAMES
 from flexspline.geometry.percent import percent
+from flexspline.pipeline.first_face import excess, held_beyond_flange
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
@@ -21,10 +23,6 @@ ENTERS = {
 """Where the torque enters, by `solver.load_case`."""
 LEAST_BEYOND_LIMIT = 5e-4
 """Probability from which play beyond the involute model's end is said: 0.05 %."""
-OF_A_HAT = (
-    " A hat’s flange touches only the outer part of it, and K_e is then too large: by 9 and 19 % on two "
-    "shafts, compared with the same shafts with their first 0.5 mm hollowed to the flange."
-)
 
 
 def assumptions(content: ReportContent) -> list[list[str]]:
@@ -36,8 +34,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
             "mounting face is held, so the bolted joint between them counts as rigid. The shaft is "
-            "held on the whole of its first face."
-            + ("" if content.design.flexspline.inward else OF_A_HAT),
+            f"held on the whole of its first face.{_beyond_flange(content.design)}",
         ],
         ["Teeth", _teeth(content)],
         [
@@ -160,6 +157,18 @@ def _buckles(content: ReportContent, limit: LinearLimit) -> str:
     return (
         f" The flexspline's tube buckles earlier, at about "
         f"{quantity('buckling_torque_Nm').with_unit(torque)} by estimate."
+    )
+
+
+def _beyond_flange(design: Design) -> str:
+    """What the whole face does to K_e of a hat's shaft."""
+    if not held_beyond_flange(design):
+        return ""
+    share = excess(design)
+    by = "" if share is None else f" by about {percent(share)}"
+    return (
+        f" The hat’s flange touches only the outer part of it: K_e is larger{by} than that of the same "
+        "shaft held only there (two bodies of revolution)."
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.listed import joined
+from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
     Backlash,
@@ -16,6 +17,7 @@ from flexspline.pipeline.backlash import (
     backlash,
     series_stiffness,
 )
+from flexspline.pipeline.first_face import held_beyond_flange, too_large_line
 from flexspline.pipeline.linear_limit import linear_limit
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
@@ -86,14 +88,23 @@ def left_out(design: Design) -> tuple[str, ...]:
 
 def agreement(design: Design) -> str:
     """How these figures stand to those of the command line."""
+    both = "; of both, K_e is too large (see the warnings)" if held_beyond_flange(design) else ""
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
         but_for = joined(dict.fromkeys(words), "and")
-        return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds"
+        return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds{both}"
     if design.solver.model == "solid":
-        return "Equals `flexspline stiffness`, there the solid model, within the bounds"
-    return "Equals `flexspline stiffness` to seven digits"
+        return f"Equals `flexspline stiffness`, there the solid model, within the bounds{both}"
+    return f"Equals `flexspline stiffness` to seven digits{both}"
+
+
+def design_warnings_shown(design: Design) -> list[str]:
+    """The design's own, and that K_e is too large; without a solve, as a slider may move."""
+    found = list(warnings(design))
+    if held_beyond_flange(design):
+        found.append(too_large_line(design, estimate=False))
+    return found
 
 
 def figure(key: str, value: float) -> Message:
@@ -107,14 +118,18 @@ def figure(key: str, value: float) -> Message:
 
 
 def without(name: str, design: Design) -> str:
-    """What a figure of the fast model leaves out, in a few words; K_b has bounds that hold with its holes."""
+    """What a figure of the fast model leaves out or holds too much, in a few words; K_b has bounds that hold
+    with its holes."""
     shaft = design.part("shaft")
     if name != "K_e":
         return ""
     left = [
         word for word, is_there in (("holes", shaft.bolts), ("keyway", shaft.keyway)) if is_there
     ]
-    return f"without {joined(left, 'and')}" if left else ""
+    said = [f"without {joined(left, 'and')}"] if left else []
+    if held_beyond_flange(design):
+        said.append("too large")
+    return ", ".join(said)
 
 
 def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:

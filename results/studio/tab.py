@@ -15,10 +15,9 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
-from flexspline.results.studio.answer import agreement, left_out, message
+from flexspline.results.studio.answer import agreement, design_warnings_shown, left_out, message
 from flexspline.results.studio.fields import received
 from flexspline.results.studio.questions import FIRST_LOBES, FIRST_STRESS, GEAR, RIM
 from flexspline.results.studio.worker import Fault, Worker
@@ -109,7 +108,7 @@ class Tab:
             return
         self._set(WantedDesign(number, design, tables, view))
         await self._send({"is": "taken", "number": number, "left_out": left_out(design),
-                          "agreement": agreement(design), "warnings": list(warnings(design)),
+                          "agreement": agreement(design), "warnings": design_warnings_shown(design),
                           **first})  # fmt: skip
 
     def _look_at(self, view: str) -> None:

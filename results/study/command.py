@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexspline.results.file_names import SENSITIVITY, STUDY
-from flexspline.results.job import RESUMES, answered, tell
+from flexspline.results.job import RESUMES, answered, tell, tell_all
 from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
 from flexspline.results.usage import named_file
@@ -68,5 +68,6 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
         gear, folder = load_design(design), folder_of(design, out, (SENSITIVITY,))
         slopes = sensitivities(gear, tell)
         said = record(gear, slopes)
+        tell_all(said["warnings"])
         write_sensitivity(folder, said)
         show(as_json(said) if json else "\n".join(lines(gear, slopes)), json)

@@ -8,6 +8,7 @@ from itertools import chain
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
+from flexspline.pipeline.first_face import held_beyond_flange, too_large_line
 from flexspline.pipeline.stress_limits import PART_OF, Peak, TabledPeak, limits_passed
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
@@ -17,12 +18,14 @@ from flexspline.results.study.labels import LISTED_DESIGNS, at_border
 
 COUNTED_DESIGNS = 10_000
 """Of which it is counted who has a warning: a design is read again in 0.12 ms, so 1.2 s; of more, none."""
+WHOLE_FACE = "K_e, the shaft's whole first face held"
+"""The kind of that warning; its line takes two solves, so it is made for a design that is told of alone."""
 FIRST = "the design that the study begins with"
 
 
 @dataclass(frozen=True)
 class _Warning:
-    """A line, and what it has in common with those of other designs."""
+    """A line ("" of WHOLE_FACE), and what it has in common with those of other designs."""
 
     line: str
     kind: str
@@ -35,10 +38,14 @@ def design_warnings(result: StudyResult) -> list[str]:
     first = _of_design(result.study.design)
     of_best = [] if best is None else _of_row(result, best)
     kinds = {warning.kind for warning in of_best}
-    told = [(f"design {best.slot}", warning) for warning in of_best] if best else []
-    told += [(FIRST, warning) for warning in first if warning.kind not in kinds]
+    begun = result.study.design
+    told = [(f"design {best.slot}", result.design_of(best), w) for w in of_best] if best else []
+    told += [(FIRST, begun, warning) for warning in first if warning.kind not in kinds]
     count = _counts(result) if told else None
-    said = [f"{name}{_in_how_many(count, w.kind, result)}: {w.line}" for name, w in told]
+    said = [
+        f"{name}{_in_how_many(count, w.kind, result)}: {w.line or too_large_line(design)}"
+        for name, design, w in told
+    ]
     known = {*first, *of_best}
     if more := [str(row.slot) for row in others if not known.issuperset(_of_row(result, row))]:
         said.append(
@@ -54,7 +61,8 @@ def _listed(result: StudyResult) -> tuple[Row, ...]:
 
 def _of_design(design: Design) -> list[_Warning]:
     """Of its dimensions; the cure behind a warning, which not every design has, is no part of the kind."""
-    return [_Warning(line, without_numbers(line.partition("; ")[0])) for line in warnings(design)]
+    found = [_Warning(line, without_numbers(line.partition("; ")[0])) for line in warnings(design)]
+    return [*found, _Warning("", WHOLE_FACE)] if held_beyond_flange(design) else found
 
 
 def _of_row(result: StudyResult, row: Row) -> list[_Warning]:

@@ -7,6 +7,8 @@ from itertools import chain
 from pathlib import Path
 
 from flexspline.geometry.listed import listed
+from flexspline.geometry.percent import percent
+from flexspline.pipeline.study.evaluate import STUDY_STRESS_TOLERANCE
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_together
 from flexspline.results.file_names import BEST_STRESS
@@ -56,13 +58,13 @@ WIDTHS = {
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design that was built, and the Pareto front.",
-    "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks the "
-    "range that a constraint allows.",
+    "parallel.png": "Every design as a line over the varied dimensions and its figures{bars}.",
     "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
     "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
     "best.png": "{sections} in section, drawn over the first design.",
-    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
+    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it; the peak in "
+    "tables and warnings is the study's own, within about {tolerance} of it.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
 }
@@ -131,8 +133,13 @@ def study_document(
 def _picture(name: str, result: StudyResult) -> Block:
     first = result.pareto[0].slot if name == BEST_STRESS else ""
     so_far = ", and the best so far" if result.feasible else "; none meets every constraint"
+    bars = "; a bar marks the range that a constraint allows" * bool(result.study.file.constraint)
     caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(
-        first=first, best_so_far=so_far, sections=_sections(result)
+        first=first,
+        best_so_far=so_far,
+        sections=_sections(result),
+        bars=bars,
+        tolerance=percent(STUDY_STRESS_TOLERANCE),
     )
     view = VIEW if name == BEST_STRESS else ""
     return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
@@ -144,7 +151,7 @@ def _sections(result: StudyResult) -> str:
 
 
 def _not_drawn(reason: str, result: StudyResult) -> Iterable[Block]:
-    caption = CAPTIONS[BEST_STRESS].format(first=result.pareto[0].slot)
+    caption = f"Design {result.pareto[0].slot} on the wave generator."
     yield Callout("amber", text=bold("Not drawn: ") + plain(f"{reason}."), items=(caption,))
 
 

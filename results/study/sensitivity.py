@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from flexspline.geometry.design import Design
+from flexspline.pipeline.first_face import too_large_lines
 from flexspline.pipeline.study.clearance_slopes import ClearanceSlope, clearance_slopes
 from flexspline.pipeline.study.slope import Slope
 from flexspline.results.atomic import write_bytes
@@ -22,6 +23,7 @@ def record(design: Design, slopes: Sequence[Slope]) -> dict[str, Any]:
         **heading(design),
         "sensitivity": [_entry(s) for s in slopes],
         "clearances": [_clearance(c) for c in clearance_slopes(design)],
+        "warnings": list(too_large_lines(design)),
     }
 
 

@@ -56,12 +56,21 @@ def shaft(says: tuple[str, ...], **changes: str) -> Bad:
 
 ONE_KEY = [
     cup(("flexspline.wal_thickness_mm", "0.4", "wall_thickness_mm"), flexspline__wal_thickness_mm="0.4"),
+    # 3000 walls of 0.4 mm
+    cup(("flexspline.length_mm = 9000", "to 1200 mm", "up to 3000 times wall_thickness_mm = 0.4", "at least 3"), flexspline__length_mm="9000"),
+    cup(("load.torque_Nmm = 500", "did you mean torque_Nm? divide a value in Nmm by 1000"), load__torque_Nmm="500", load__torque_Nm=None),
+    cup(("flexspline.wall_thickness_um", "did you mean wall_thickness_mm? divide a value in um by 1000"), flexspline__wall_thickness_um="400.0", flexspline__wall_thickness_mm=None),
+    cup(("material.flexspline.youngs_modulus_MPa", "did you mean youngs_modulus_GPa? divide a value in MPa by 1000"), material__flexspline__youngs_modulus_MPa="206000.0", material__flexspline__youngs_modulus_GPa=None),
+    cup(("gear.flank_clearance_mm", "did you mean flank_clearance_um? multiply a value in mm by 1000"), gear__flank_clearance_mm="0.004", gear__flank_clearance_um=None),
+    # a tenth of the ring's module is right; R = 200 mm: 2.9e-3 R³ = 23 200 N·m, a thousandth is 23.2; at R = 20 mm 2320 is the most
+    cup(("gear.module_mm = 2.0: must be from", "some 0.2; else no gear of that size has gear.rated_torque_Nm = 20"), gear__module_mm="2.0", gear__rated_torque_Nm="20.0"),
+    cup(("gear.module_mm = 0.1: must be from", "and gear.rated_torque_Nm = 100000.0: must be from"), gear__module_mm="0.1", gear__rated_torque_Nm="1e5"),
     cup(("gear.modul_mm", "did you mean module_mm"), gear__modul_mm="0.2", gear__module_mm=None),
     cup(("beering", "unknown key", "bearing"), beering__radial_clearance_um="1"),
     cup(("flexspline.wall_thickness_mm", "missing", "0.001 to 10000 mm"), flexspline__wall_thickness_mm=None),
     cup(("flexspline.wall_thickness_mm", "-0.4", "0.001 to 10000 mm"), flexspline__wall_thickness_mm="-0.4"),
     cup(("flexspline.wall_thickness_mm", "nan", "0.001 to 10000 mm"), flexspline__wall_thickness_mm="nan"),
-    cup(("flexspline.length_mm", "inf", "0.001 to 10000 mm"), flexspline__length_mm="inf"),
+    cup(("flexspline.length_mm", "inf", "0.001 to 1200 mm"), flexspline__length_mm="inf"),
     cup(("flexspline.length_mm", '"30"', "a number", "not text"), flexspline__length_mm='"30"'),
     cup(("flexspline.bolt_count", "6.5", "whole number from 0 to 200"), flexspline__bolt_count="6.5"),
     cup(("flexspline.bolt_count", "-6", "from 0 to 200"), flexspline__bolt_count="-6"),

@@ -117,7 +117,10 @@ def _in_words(text: str, written: str | None) -> ColumnName | None:
         ending = "" if token in QUANTITY_OF else next(filter(token.endswith, ENDINGS), "")
         if ending:
             kinds.add(ENDINGS[ending])
-            left.append(token.removesuffix(ending))
+            rest = token.removesuffix(ending)
+            if QUANTITY_OF.get(rest) in PLAIN:  # the time of a cycle is no time stamp
+                kinds.add(QUANTITY_OF[rest])
+            left.append(rest)
         elif token in QUANTITY_OF:
             kinds.add(QUANTITY_OF[token])
         else:
@@ -171,5 +174,12 @@ def _qualified(quantity: str, words: list[str], written: str | None) -> ColumnNa
     if quantity not in QUANTITIES:
         return ColumnName(quantity, sure=not left)
     unit = None if written is None else unit_named(QUANTITIES[quantity].name, written)
+    if unit is None and written is not None and _is_another(written.strip()):
+        return None
     strange = written.strip() if written is not None and unit is None else None
     return ColumnName(quantity, unit, strange, sure=not left)
+
+
+def _is_another(written: str) -> bool:
+    """Whether a word that is a unit in small letters only means another quantity: "Torque (Min)"."""
+    return written != written.lower() and written.lower() in ANOTHER

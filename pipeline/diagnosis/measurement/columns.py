@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
+from flexspline.geometry.full_width import narrow
 from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
@@ -188,6 +189,24 @@ def _line_of_unit(grid: CellGrid, at: int, name: ColumnName) -> int:
     alone = column_name(grid.head[at])
     in_row = name.strange is not None and (alone is None or alone.strange is None)
     return grid.unit_line if in_row else grid.head_line
+
+
+def unit_not_known(head: str, wanted: str) -> str | None:
+    """Why a column that was left out may be the one wanted, such as angle_arcsec; None where it is not.
+
+    Its head names the quantity, but words stand beside it that are no unit: "Angle (xyz)".
+    """
+    for text in (_in_square(head), head):
+        name = column_name(text)
+        if name is not None and name.quantity in QUANTITIES and _name(name.quantity) == wanted:
+            return _no_unit(head, name) if name.unit is None else None
+    return None
+
+
+def _in_square(head: str) -> str:
+    """With the last round brackets as square ones, in which a unit must stand."""
+    before, opens, inside = narrow(head).rpartition("(")
+    return f"{before}[{inside.replace(')', ']', 1)}" if opens else head
 
 
 def _no_unit(head: str, name: ColumnName) -> str:

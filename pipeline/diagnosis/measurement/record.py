@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,15 +11,23 @@ import numpy as np
 
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
+from flexspline.pipeline.diagnosis.measurement.columns import unit_not_known
 from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
+from flexspline.pipeline.diagnosis.measurement.lost_readings import LostReadings
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings, without_wrong
 
+MEANT = {
+    "unit": "name or number of the gear measured",
+    "specimen": "name or number of the part measured",
+}
+"""What a column of labels holds: "unit" alone reads like a unit of measurement."""
 HEADS_SHOWN = 12
 """Most columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
@@ -68,6 +76,8 @@ class Sweep:
     """Readings whose rows were left out."""
     held_rows: int = 0
     """Rows left out, as a slow channel's angle repeats the one before."""
+    lost: LostReadings | None = None
+    """Rows left out, in which torque or angle was not recorded."""
     went_to: np.ndarray | None = None
     """Of each data row of the file, the row here that it is or went into, −1 where it was left out; None
     where the rows are those of the file."""
@@ -149,8 +159,8 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
     ------
     MeasurementError : unreadable, no known kind, or values that cannot be.
     """
-    table = read_table(path, counts_per_turn)
-    if table.has("specimen", "stiffness_Nm_per_rad"):
+    table = read_table(path, counts_per_turn, leave_out=True)
+    if table.has("stiffness_Nm_per_rad") and _names(table, "specimen", "unit"):
         return _specimens(table)
     if table.has("angle_plus_arcsec", "angle_minus_arcsec"):
         return _end_points(table)
@@ -165,11 +175,26 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
         ((k, [n for n in names if not table.has(n)]) for k, names in wanted.items()),
         key=lambda pair: len(pair[1]) / len(wanted[pair[0]]),
     )
-    reason = f"column {', '.join(missing)} is missing for {kind}"
+    raise _missing(table, missing, kind)
+
+
+def _missing(table: MeasuredTable, missing: Sequence[str], kind: str) -> MeasurementError:
+    """The error for columns that a kind of measurement needs: what they hold, and what the file has."""
+    for name in missing:
+        for head in table.read_as.ignored:
+            if (why := unit_not_known(head, name)) is not None:
+                return MeasurementError(table.path, table.read_as.head_line, why)
+    named = (f"{name} ({MEANT[name]})" if name in MEANT else name for name in missing)
+    reason = f"column {', '.join(named)} is missing for {kind}"
     heads = [h for h in table.read_as.heads if h][:HEADS_SHOWN]
     has = f"the header in line {table.read_as.head_line} has: {', '.join(heads)}"
     parted = "; separate the columns by commas, semicolons or tabs" if len(heads) == 1 else ""
-    raise table.refuse(None, f"{reason}; {has}{parted}")
+    return table.refuse(None, f"{reason}; {has}{parted}")
+
+
+def _names(table: MeasuredTable, *columns: str) -> tuple[str, ...] | None:
+    """Names or numbers of what was measured, by the first of these columns that there is."""
+    return next((table.labels[c] for c in columns if c in table.labels), None)
 
 
 def _sweep(as_read: MeasuredTable) -> Sweep:
@@ -191,15 +216,16 @@ def _sweep(as_read: MeasuredTable) -> Sweep:
     return Sweep(
         table.path, history, table.numbers["angle_arcsec"], found.units, found.cycles,
         table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
-        held_rows=int(held.sum()), went_to=went_to,
+        held_rows=int(held.sum()), went_to=went_to, lost=as_read.lost,
     )  # fmt: skip
 
 
 def _went_to(as_read: MeasuredTable, left: MeasuredTable) -> np.ndarray | None:
     """The row that is `left` of each row read, −1 of none; None where all are left. A line is a row."""
-    if len(left) == len(as_read):
+    lost = () if as_read.lost is None else as_read.lost.lines
+    if len(left) == len(as_read) and not lost:
         return None
-    stays = np.isin(as_read.line, left.line)
+    stays = np.isin(np.sort([*as_read.line, *lost]), left.line)
     return np.where(stays, np.cumsum(stays) - 1, -1)
 
 
@@ -233,9 +259,10 @@ def _refuse_full_turns(table: MeasuredTable, unit: np.ndarray) -> None:
 
 
 def _end_points(table: MeasuredTable) -> EndPoints:
-    for name in ("unit", "torque_Nm"):
-        if not table.has(name):
-            raise table.refuse(None, f"column {name} is missing for end points")
+    units = _names(table, "unit", "specimen")
+    missing = [*([] if units else ["unit"]), *([] if table.has("torque_Nm") else ["torque_Nm"])]
+    if units is None or missing:
+        raise _missing(table, missing, "end points")
     torque = table.numbers["torque_Nm"]
     bad = np.flatnonzero(~((torque >= TORQUE_Nm.low) & (torque <= TORQUE_Nm.high)))
     if len(bad):
@@ -245,7 +272,7 @@ def _end_points(table: MeasuredTable) -> EndPoints:
     if angles.max() < SMALLEST_ANGLE_arcsec:
         _refuse_empty(table, "angle_plus_arcsec", SMALLEST_ANGLE_arcsec)
     return EndPoints(
-        table.path, table.labels["unit"], torque,
+        table.path, units, torque,
         table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"], table.read_as,
     )  # fmt: skip
 
@@ -272,7 +299,7 @@ def _specimens(table: MeasuredTable) -> Specimens:
             reason = f"{name} = {values[bad[0]]:g}: must be {STIFFNESS_Nm_per_rad} N·m/rad"
             raise table.refuse(int(bad[0]), reason)
     return Specimens(
-        table.path, table.labels["specimen"], part,
+        table.path, _names(table, "specimen", "unit") or (), part,
         table.numbers["stiffness_Nm_per_rad"], table.numbers.get("stiffness_std_Nm_per_rad"),
         {k: v for k, v in table.numbers.items() if "." in k}, table.line,
         "part" in table.labels, table.read_as,

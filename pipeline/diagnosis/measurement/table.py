@@ -17,6 +17,13 @@ from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn,
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import CELL_CHARS, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
+from flexspline.pipeline.diagnosis.measurement.lost_readings import (
+    MEASURED,
+    LostReadings,
+    is_empty,
+    too_many,
+    without_lost,
+)
 from flexspline.pipeline.diagnosis.measurement.number_text import DecimalMark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
@@ -39,6 +46,8 @@ class MeasuredTable:
     labels: Mapping[str, tuple[str, ...]]
     line: np.ndarray
     read_as: ReadAs
+    lost: LostReadings | None = None
+    """Rows left out, in which nothing was recorded."""
 
     def __len__(self) -> int:
         return len(self.line)
@@ -69,18 +78,21 @@ class MeasuredTable:
         return MeasurementError(self.path, None if row is None else int(self.line[row]), reason)
 
 
-def read_table(path: Path, counts_per_turn: float | None = None) -> MeasuredTable:
+def read_table(
+    path: Path, counts_per_turn: float | None = None, leave_out: bool = False
+) -> MeasuredTable:
     """Read a measurement, CSV or .xlsx, as rigs write it (docs/contract.md, section 4).
 
     Columns whose head names no quantity are kept aside, and so is an optional one that is empty in every
     row; dotted design keys are read as numbers. `counts_per_turn` of the encoder whose column is in counts.
+    `leave_out`: a sweep's rows without torque or angle, where they are few (`lost_readings`).
 
     Raises
     ------
     MeasurementError : anything that cannot be read without guessing.
     """
     try:
-        table = table_of(read_grid(path), counts_per_turn)
+        table = table_of(read_grid(path), counts_per_turn, leave_out)
     except MeasurementError as fault:
         raise _toml_instead(path) or fault from None
     if not table.read_as.columns and (other := _toml_instead(path)) is not None:
@@ -98,13 +110,16 @@ def _toml_instead(path: Path) -> MeasurementError | None:
     return MeasurementError(path, None, f"is {what}; a measured record (CSV or .xlsx) is expected")
 
 
-def table_of(grid: CellGrid, counts_per_turn: float | None = None) -> MeasuredTable:
+def table_of(
+    grid: CellGrid, counts_per_turn: float | None = None, leave_out: bool = False
+) -> MeasuredTable:
     """The columns of a grid; as `read_table`."""
     columns = columns_of(grid, counts_per_turn)
     if grid.misfit is not None:
         raise grid.misfit
     if not grid.rows:
         raise MeasurementError(grid.path, grid.head_line, "a header and no data rows")
+    grid, lost = without_lost(grid, columns) if leave_out else (grid, None)
     across = list(zip(*grid.rows, strict=True))
     _refuse_unnamed(grid, across)
     cells = {c.at: [t.strip() for t in across[c.at]] for c in columns}
@@ -136,6 +151,7 @@ def table_of(grid: CellGrid, counts_per_turn: float | None = None) -> MeasuredTa
             bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(), grid.footer,
             grid.heads_again,
         ),
+        lost,
     )  # fmt: skip
 
 
@@ -153,7 +169,7 @@ def _refuse_unnamed(grid: CellGrid, across: Sequence[Sequence[str]]) -> None:
 
 
 def _holds(text: str) -> bool:
-    return text not in ("", "-") and text.lower() != "nan"
+    return not is_empty(text)
 
 
 def _is_number(column: ReadColumn) -> bool:
@@ -176,7 +192,8 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: DecimalM
         many = sum(not _holds(t) for t in texts)
         if not _holds(text) and many > 1:
             way = "take the column out" if column.name in OPTIONAL else "leave these rows out"
-            what += f" (so are {many} of {len(texts)} rows; fill them, or {way})"
+            more = too_many(many, len(texts)) if column.name in MEASURED else ""
+            what += f" (so are {many} of {len(texts)} rows; fill them, or {way}{more})"
         raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
     _refuse_outside(grid, column, values)
     largest = np.abs(values).max()

@@ -97,34 +97,35 @@ def _products(forces: str, lengths: str) -> str:
 
 _WRITTEN: Mapping[str, Mapping[str, str]] = {
     "torque": {
-        "Nm": f"Nm NM nm N-m N-M n-m {_NEWTON_METRES}",
-        "Nmm": "Nmm N-mm", "mNm": "mNm mnm mN-m", "Ncm": "Ncm N-cm cNm cN-m",
-        "kNm": "kNm knm KNm kN-m", "uNm": "uNm µNm μNm uN-m µN-m μN-m", "daNm": "daNm daN-m",
+        "Nm": f"Nm NM nm N-m N-M n-m {_NEWTON_METRES} 牛米 牛-米 牛顿米 牛顿-米 ニュートンメートル",
+        "Nmm": "Nmm N-mm 牛毫米 牛-毫米", "mNm": "mNm mnm mN-m 毫牛米 毫牛-米", "Ncm": "Ncm N-cm cNm cN-m",
+        "kNm": "kNm knm KNm kN-m 千牛米 千牛-米", "uNm": "uNm µNm μNm uN-m µN-m μN-m", "daNm": "daNm daN-m",
         "in_lbf": _products(_POUND, _INCH), "ft_lbf": _products(_POUND, _FOOT),
         "in_ozf": _products(_OUNCE, _INCH), "kgf_m": _products(_KGF, "m"),
         "kgf_cm": _products(_KGF, _CM), "kgf_mm": _products(_KGF, "mm"), "gf_cm": _products("gf g", _CM),
     },
     "angle": {
         "arcsec": "arcsec arcsecs arc-sec arc-seconds arcsecond arcseconds asec ″ \" '' ′′ ’’ ” "
-        "secondsofarc secofarc bogensekunde bogensekunden",
+        "secondsofarc secofarc bogensekunde bogensekunden 角秒 弧秒 秒角 秒",
         "arcmin": "arcmin arcmins arc-min arc-minutes arcminute arcminutes amin ′ ' ’ "
-        "minutesofarc minofarc bogenminute bogenminuten",
-        "deg": "deg degs degree degrees ° º Grad",
+        "minutesofarc minofarc bogenminute bogenminuten 角分 弧分 分角 分",
+        "deg": "deg degs degree degrees ° º Grad 度",
         "mdeg": "mdeg m°", "gon": "gon",
         "urad": "urad µrad μrad microradian microradians",
-        "mrad": "mrad millirad milliradian milliradians",
-        "rad": "rad rads radian radians radiant",
-        "rev": "rev revs revolution revolutions turn turns umdrehung umdrehungen",
+        "mrad": "mrad millirad milliradian milliradians 毫弧度",
+        "rad": "rad rads radian radians radiant 弧度 ラジアン",
+        "rev": "rev revs revolution revolutions turn turns umdrehung umdrehungen 圈",
         COUNTS: "counts count cts inc incs increment increments inkr inkremente pulses ticks digits",
     },
     "time": {
-        "s": "s sec secs second seconds sek sekunde sekunden",
-        "ms": "ms msec millisecond milliseconds millisekunden",
+        "s": "s sec secs second seconds sek sekunde sekunden 秒",
+        "ms": "ms msec millisecond milliseconds millisekunden 毫秒 ミリ秒",
         "us": "us µs μs microseconds",
-        "min": "min mins minute minutes minuten", "h": "h hr hrs hour hours std stunde stunden",
+        "min": "min mins minute minutes minuten 分 分钟",
+        "h": "h hr hrs hour hours std stunde stunden 小时 时 時間",
     },
     "temperature": {
-        "C": "C c °C ℃ ºC degC degc celsius gradcelsius", "K": "K kelvin degK °K",
+        "C": "C c °C ℃ ºC degC degc celsius gradcelsius 度 摄氏度", "K": "K kelvin degK °K",
     },
     "stiffness": {
         "Nm_per_rad": "Nm_per_rad Nm/rad Nmrad-1 Nm/rad.", "kNm_per_rad": "kNm_per_rad kNm/rad",
@@ -138,11 +139,22 @@ UNITS: Mapping[str, Mapping[str, str]] = {
 """By the quantity's name: our word for each way of writing a unit, without spaces; the sign of a product is
 left out, a hyphen stays."""
 _PRODUCT = re.compile(
-    r"(?<=[A-Za-z])\s*[·⋅∙•・･×*.]\s*(?=[A-Za-zµμ])|\s+|[⁻^](?=\d|¹)|(?<=[A-Za-z])\.$"
+    r"(?<=[A-Za-z牛顿ン])\s*[·⋅∙•・･×*.]\s*(?=[A-Za-zµμ米毫メ])|\s+|[⁻^](?=\d|¹)|(?<=[A-Za-z])\.$"
 )
 """Signs of a product, spaces, a power's sign, and the dot of an abbreviation at the end."""
-_HYPHEN = re.compile(r"(?<=[A-Za-z])\.?[-−‐‑–_](?=[A-Za-z])")
+_HYPHEN = re.compile(r"(?<=[A-Za-z牛顿])\.?[-−‐‑–_](?=[A-Za-z米毫])")
 """What may stand for a product in a unit of two words; `m-s` and `m_Nm` are none, so a table holds them."""
+
+
+def _in_any_case(ways: Mapping[str, str]) -> Mapping[str, str]:
+    """Of ways in small letters, those that one unit alone has; grad (gon) is no Grad (°)."""
+    units: dict[str, set[str]] = {}
+    for way, unit in ways.items():
+        units.setdefault(way.lower(), set()).add(unit)
+    return {way: u.pop() for way, u in units.items() if len(u) == 1 and way != "grad"}
+
+
+_IN_ANY_CASE = {name: _in_any_case(ways) for name, ways in UNITS.items()}
 
 
 def unit_named(name: str, written: str) -> str | None:
@@ -153,11 +165,17 @@ def unit_named(name: str, written: str) -> str | None:
     for way in (plain, bare, _HYPHEN.sub("-", plain)):
         if way in ways:
             return ways[way]
-        # words in any case; symbols are told by case: mNm is no MNm, and grad (gon) no Grad (°)
         lower = way.lower()
         if len(lower) > 3 and lower != "grad" and lower in ways:
             return ways[lower]
+        if not _is_mega(name, way) and len(lower) > 1 and lower in _IN_ANY_CASE[name]:
+            return _IN_ANY_CASE[name][lower]
     return None
+
+
+def _is_mega(name: str, way: str) -> bool:
+    """Whether a small first letter would make another unit of it: mNm is no MNm."""
+    return way.startswith("M") and way[1:].lower() in _IN_ANY_CASE[name]
 
 
 def symbol(unit: str) -> str:

@@ -17,9 +17,10 @@ _QUANTITIES = {
     "time": "time zeit timestamp datetime date datum uhrzeit zeitstempel elapsed čas cas 时间 时刻 時間",
     "temperature": "temperature temperatur temp teplota 温度 油温",
     "stiffness": "stiffness steifigkeit torsionssteifigkeit tuhost 刚度 剛性",
-    "cycle": "cycle cycles zyklus zyklen loop cyklus cyklu 循环 循环次数 サイクル サイクル数",
-    "unit": "unit gear prüfling seriennummer serial sn",
-    "specimen": "specimen probe",
+    "cycle": "cycle cycles zyklus zyklen loop durchgang durchlauf takt cyklus cyklu "
+    "循环 循环次数 サイクル サイクル数",
+    "unit": "unit gear prüfling einheit gerät getriebe exemplar seriennummer serial sn",
+    "specimen": "specimen probe muster",
     "part": "part bauteil",
 }
 QUANTITY_OF = {word: quantity for quantity, words in _QUANTITIES.items() for word in words.split()}

@@ -32,7 +32,7 @@ BAD = {
     "no known column": (rows("force_N,place_mm", *GOOD), "is missing"),
     "text in numbers": (rows("torque_Nm,angle_arcsec", *GOOD, "0.5,high"), ':42: angle_arcsec = "high"'),
     "a decimal comma": (rows("torque_Nm,angle_arcsec", *GOOD, '"0,5",3'), ':42: torque_Nm = "0,5"'),
-    "NaN": (rows("torque_Nm,angle_arcsec", "nan,3", *GOOD), ':2: torque_Nm = "nan"'),
+    "NaN": (rows("torque_Nm,angle_arcsec", *["nan,3"] * 4, *GOOD), ':2: torque_Nm = "nan"'),
     "infinity": (rows("torque_Nm,angle_arcsec", *GOOD, "inf,3"), 'torque_Nm = "inf"'),
     "a number beyond doubles": (rows("torque_Nm,angle_arcsec", *GOOD, "1e999,3"), '"1e999"'),
     "a number beyond any rig": (rows("torque_Nm,angle_arcsec", *GOOD, "1,1e300"), "angle_arcsec = 1e+300"),
@@ -43,7 +43,7 @@ BAD = {
     "a sensor's sign of a fault":
         (sweep_of("temperature_C", [21.5] * 39 + [-999]), ":41: temperature_C = -999: must be from -273.15"),
     "an underscore": (rows("torque_Nm,angle_arcsec", *GOOD, "1_0,3"), '"1_0"'),
-    "an empty field": (rows("torque_Nm,angle_arcsec", *GOOD, ",3"), "torque_Nm is empty"),
+    "an empty field": (rows("torque_Nm,angle_arcsec", *GOOD, *[",3"] * 4), "torque_Nm is empty"),
     "one row": (rows("torque_Nm,angle_arcsec", "0.5,3"), "1 data rows"),
     "time backwards": (sweep_of("time_s", [5, 4]), ":3: time runs backwards"),
     "cycles backwards": (sweep_of("cycle", [2, 1]), "cycle numbers run backwards"),

@@ -187,3 +187,15 @@ def test_the_first_design_is_solved_once(tmp_path: Path) -> None:
     found = [start_outcome(study, trial_store_of(study, tmp_path), None, solve) for _ in range(2)]
     assert solved == [{}]
     assert found[0] == found[1] == Outcome({"K_b_Nm_per_rad": 7.0})
+
+
+def test_the_captions_say_only_what_is_drawn() -> None:
+    """A bar marks what a constraint allows; and the picture's peak is not the table's to the last digit."""
+    constrained = STUDY.replace("[run]", f'[constraint]\n"{PEAK}" = {{ max = 500.0 }}\n[run]')
+    for text, bars in ((STUDY, False), (constrained, True)):
+        made = study_document(
+            result_of((0.55, 400.0), (0.7, 400.0), text=text), ("parallel.png", "best_stress.png")
+        )
+        said = str(payload_of(made))
+        assert ("a bar marks the range" in said) is bars
+        assert "the study's own, within about 1 % of it" in said

@@ -44,6 +44,20 @@ SAID = {
     "úhel generátoru vln (deg)": ("input_angle", "deg"), "zkroucení (arcsec)": ("angle", "arcsec"),
     "ウェーブジェネレータ回転角 (deg)": ("input_angle", "deg"), "输出端扭转角 (arcsec)": ("angle", "arcsec"),
     "刚度 标准差 (Nm/rad)": ("stiffness_std", "Nm_per_rad"),
+    "Angle (DEG)": ("angle", "deg"), "Angle [Deg]": ("angle", "deg"), "Angle (RAD)": ("angle", "rad"),
+    "Time (SEC)": ("time", "s"), "TIME (MIN)": ("time", "min"),
+    "TORQUE (KNM)": ("torque", "kNm"), "Torque (NMM)": ("torque", "Nmm"),
+    "STIFFNESS [NM/RAD]": ("stiffness", "Nm_per_rad"),
+    "输出角度(角秒)": ("angle", "arcsec"), "角度(角分)": ("angle", "arcmin"), "角度（度）": ("angle", "deg"),
+    "角度(分)": ("angle", "arcmin"), "角度(秒)": ("angle", "arcsec"), "转角/弧度": ("angle", "rad"),
+    "扭矩(牛·米)": ("torque", "Nm"), "扭矩[牛米]": ("torque", "Nm"), "扭矩(牛•米)": ("torque", "Nm"),
+    "扭矩(牛顿·米)": ("torque", "Nm"), "扭矩(牛-米)": ("torque", "Nm"), "扭矩(千牛·米)": ("torque", "kNm"),
+    "トルク(ニュートン・メートル)": ("torque", "Nm"),
+    "时间(秒)": ("time", "s"), "时间(分)": ("time", "min"), "時間(秒)": ("time", "s"),
+    "时间(毫秒)": ("time", "ms"), "油温(度)": ("temperature", "C"),
+    "Einheit": ("unit", None), "Gerät": ("unit", None), "Getriebe": ("unit", None),
+    "Exemplar": ("unit", None), "Muster": ("specimen", None), "Probe": ("specimen", None),
+    "Durchgang": ("cycle", None), "Takt": ("cycle", None), "Takt-Nr.": ("cycle", None),
     "出力トルク [Nm]": ("torque", "Nm"), "回転角 [deg]": ("angle", "deg"), "時間 [s]": ("time", "s"),
 }  # fmt: skip
 WRITTEN = {
@@ -73,13 +87,16 @@ NOT_OURS = (
     "moment na vstupu [Nm]", "给定扭矩 [Nm]", "設定トルク [Nm]", "požadovaný moment [Nm]", "最大扭矩 [Nm]",
     "摩擦力矩 [Nm]", "サイクル時間 (s)", "čas cyklu (s)", "剩余时间 (s)", "残り時間 (s)",
     "扭转角 标准差 (arcsec)", "角速度 [deg/s]", "仿真转角 [arcsec]",
+    "Torque (Min)", "Torque Min", "Angle (MAX)", "Taktzeit [s]", "Zykluszeit [s]",
     "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
 )  # fmt: skip
 NO_UNIT = {
     "torque": "", "Drehmoment": "", "torque_lbf": "lbf", "Torque [lbf]": "lbf",
     "Torque [kg]": "kg", "Torque [lb/in]": "lb/in", "Torque [m-N]": "m-N", "angle_min": "min",
+    "Time [MS]": "MS",
     "Angle [grad]": "grad", "Temp [F]": "F", "Torque [deg]": "deg", "Torque [MNm]": "MNm",
-    "Torque [MN-m]": "MN-m",
+    "Torque [MN-m]": "MN-m", "Torque (MNM)": "", "Torque [MNM]": "MNM", "Angle [GRAD]": "GRAD",
+    "角度[角X]": "角X",
 }  # fmt: skip
 """Quantities whose unit is missing or none: grad is degrees or gon, MNm no small gear's."""
 
