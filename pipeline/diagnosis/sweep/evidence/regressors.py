@@ -12,6 +12,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -124,10 +125,12 @@ def design_matrix(
     known: dict[str, Cause],
     ahead: FrictionAhead | None = None,
     step: int | None = None,
+    bumps: Sequence[Bump] = (),
 ) -> DesignMatrix:
     """Evaluate every shape of every cause, and every nuisance term, on a rig's record.
 
-    `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`).
+    `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`). `bumps` : the
+    likeliest of the curve over the torque (`../local_bump.py`).
     """
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
@@ -146,7 +149,7 @@ def design_matrix(
             )
             blocks.append(block.astype(np.float32))
             width += k
-    rivals = nuisance_terms(rig, step)
+    rivals = nuisance_terms(rig, step, bumps)
     for rival in rivals:
         terms.append(_nuisance_regressor(rival, rivals, width, rig))
         blocks.append(rival.columns.astype(np.float32))

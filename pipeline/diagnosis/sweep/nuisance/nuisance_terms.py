@@ -6,7 +6,7 @@ the name of the cause that mimics it best.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
     changing_stiffness,
     over_cycle,
@@ -35,6 +36,7 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.lagged_torque import lagging_t
 from flexspline.pipeline.diagnosis.sweep.nuisance.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.nuisance.torque_nuisance import (
     Made,
+    bump_of,
     leading,
     over_angle,
     over_direction,
@@ -81,14 +83,18 @@ class _NuisanceKind:
     spread: float = NUISANCE_SPREAD
 
 
-def nuisance_terms(rig: FitContext, step: int | None = None) -> list[NuisanceTerm]:
+def nuisance_terms(
+    rig: FitContext, step: int | None = None, bumps: Sequence[Bump] = ()
+) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
-    `step` : the row from which a jump of the zero is likeliest. Columns have unit rms in the rows that count.
+    `step` : the row from which a jump of the zero is likeliest. `bumps` : those of the curve. Columns have
+    unit rms in the rows that count.
     """
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
     if step is not None:
         kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
+    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump)) for bump in bumps))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
