@@ -21,6 +21,8 @@ from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
 """Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+AS_SIMULATED_WITHIN = 0.5
+"""Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
@@ -136,7 +138,9 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
     if not std:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
-        return f"{found} (as simulated: this record does not narrow it)"
+        if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
+            return f"{found} (as simulated: this record does not narrow it)"
+        return f"{found} (simulated {plus_minus(simulated, std)}; this record does not narrow it)"
     off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 

@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
     rounding_of_angle,
@@ -26,7 +27,7 @@ from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_note
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import figures_text, grouped
 
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
@@ -139,6 +140,7 @@ def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> lis
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
     found += _rounding_notes(explained)
     found += _noise_notes(explained)
+    found += _cancelling_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
     if prepared.sweep.read_as.ignored:
@@ -155,6 +157,18 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
         f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
         f"some {1 / (1 - noise.memory):.0f} rows; an effect without a form in torque, time or position "
         "would look the same"
+    ]
+
+
+def _cancelling_notes(explained: ExplainedSweep) -> list[str]:
+    """That terms without a name cancel, and how much they are together."""
+    identified = explained.identified
+    if not terms_cancel(identified):
+        return []
+    return [
+        "the effects without a name cancel in part: together they are "
+        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; their forms and single sizes are not to be "
+        "relied on, and compliance and gap are calibrated without them"
     ]
 
 

@@ -11,6 +11,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR
+from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
+    terms_cancel,
+    without_unnamed,
+)
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
@@ -23,7 +27,28 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     for which the posterior holds; the mean distance of other shapes' fits; and, of the compliance, what
     friction takes at the ends of its loop, or the load at which a soft wind-up is as stiff as simulated: each
     is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states.
+
+    Beside terms without a name that cancel each other any compliance and gap fit. Then they are those of the
+    simulation with the named causes alone, and differ from the best set's by a deviation more.
     """
+    found = _of_best_set(explained, unit)
+    if not terms_cancel(explained.identified):
+        return found
+    simple = _calibrated(without_unnamed(explained.identified), unit)
+    return replace(
+        simple,
+        gap_arcsec=_apart(simple.gap_arcsec, found.gap_arcsec),
+        compliance=simple.compliance
+        and found.compliance
+        and _apart(simple.compliance, found.compliance),
+    )
+
+
+def _apart(simple: Estimate, other: Estimate) -> Estimate:
+    return Estimate(simple.value, hypot(simple.std, simple.value - other.value))
+
+
+def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     fit = explained.identified.fit
     found = _calibrated(fit, unit)
     slope, gap = _beside_ahead(explained)
