@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import hypot
 
 import numpy as np
@@ -13,11 +12,9 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.decision import weights
-from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
     GaussianEvidence,
-    shape_key,
 )
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
@@ -25,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
 )
+from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_changes
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
 
 SHAPE_NATS = 3.0
@@ -57,7 +55,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if THERMAL in std:
         std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
-        std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
+        std[SERIES] = hypot(std[SERIES], _spring_std(identified))
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
@@ -85,29 +83,15 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
     return fits, weights([c.score / nats for c in alike])
 
 
-def _spring_std(identified: Identification, magnitude: float) -> float:
-    """Of a spring's size, by laws of other causes that fit as well and leave it another one.
+def _spring_std(identified: Identification) -> float:
+    """Of a spring's size [%], by laws of other causes that fit as well and leave it another one.
 
-    Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
-    says: they count alike. What the prior says of larger springs is no evidence of the smaller.
+    They count alike: what the prior says of larger springs is no evidence of the smaller.
     """
-    evidence, best = identified.search.evidence, identified.best
-    others = list(_but_for_a_spring(evidence, best))
-    sizes = [fit_regressors(evidence, terms).magnitudes()[SERIES] for terms in others]
-    off = np.array(sizes) - magnitude
+    fit = identified.fit
+    changes = np.concatenate([np.empty(0), *spring_changes(fit)])
+    off = 100 * changes / fit.rig.prediction.compliance
     return float(np.sqrt((off**2).sum() / (1 + len(off))))
-
-
-def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
-    """Sets with a term's shape replaced by one that leaves the spring another size."""
-    at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
-    for place, i in enumerate(best.terms):
-        term = evidence.terms[i]
-        rig = evidence.columns.rig
-        for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
-            other = at.get(shape_key(term.owner, shape))
-            if other is not None:
-                yield (*best.terms[:place], other, *best.terms[place + 1 :])
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:
