@@ -28,6 +28,7 @@ FormKind = Literal[
     "own_gap",
     "changing_zero",
     "changing_stiffness",
+    "changing_gain",
     "bent_gap",
     "jumps",
     "comes_back",

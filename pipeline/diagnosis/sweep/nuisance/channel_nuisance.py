@@ -36,7 +36,7 @@ TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
 DEGREES = (1, 2, 3)
-"""Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
+"""Of the polynomial in time by which a stiffness or a gain changes: evenly, with a bend, with a turn."""
 
 
 def _passed(rig: FitContext) -> np.ndarray | None:
@@ -65,6 +65,17 @@ def changing_stiffness(rig: FitContext) -> Made:
     for degree in DEGREES:
         powers = np.column_stack([t**k for k in range(1, degree + 1)])
         yield "time_s", UnnamedForm("changing_stiffness"), torque[:, None] * powers
+
+
+def changing_gain(rig: FitContext) -> Made:
+    """A gain of the angle's channel that changes with time by a polynomial: so does the gap's step."""
+    t = _passed(rig)
+    if t is None:
+        return
+    angle = to_one(rig.prediction.for_race.angle_arcsec(rig.history))
+    for degree in DEGREES:
+        powers = np.column_stack([t**k for k in range(1, degree + 1)])
+        yield "time_s", UnnamedForm("changing_gain"), angle[:, None] * powers
 
 
 def waves_and_steps(rig: FitContext) -> Made:

@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
+    changing_gain,
     changing_stiffness,
     over_cycle,
     over_position,
@@ -159,6 +160,7 @@ NUISANCE_KINDS = (
     _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),
     _NuisanceKind(over_time, less=_of_lags, against=frozenset({DRIFT})),
     _NuisanceKind(changing_stiffness),
+    _NuisanceKind(changing_gain),
     _NuisanceKind(waves_and_steps, less=_of_lags),
     _NuisanceKind(over_cycle),
     _NuisanceKind(over_temperature),
