@@ -29,6 +29,7 @@ FormKind = Literal[
     "changing_zero",
     "changing_stiffness",
     "changing_gain",
+    "changing_loop",
     "bent_gap",
     "jumps",
     "comes_back",

@@ -60,6 +60,8 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
         "input_angle_deg",
     ): "a zero offset that changes with the wave generator's angle, as with an "
     "eccentric encoder at the output",
+    ("changing_loop", "cycle"): "a friction loop whose width changes from cycle to cycle",
+    ("changing_loop", "temperature_C"): "a friction loop whose width changes with temperature",
     ("changing_gain", "time_s"): "a gain of the angle reading that changes with time",
     ("changing_gain", "row"): "a gain of the angle reading that changes along the record",
     ("changing_stiffness", "time_s"): "a stiffness that changes with time",

@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
+    changing_friction,
     changing_gain,
     changing_stiffness,
     over_cycle,
@@ -166,6 +167,7 @@ NUISANCE_KINDS = (
     _NuisanceKind(over_temperature),
     _NuisanceKind(over_position),
     _NuisanceKind(over_turns),
+    _NuisanceKind(changing_friction),
     _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
     _NuisanceKind(over_unit),
     _NuisanceKind(giving_way, positive=True),
