@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.geometry.listed import joined
-from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS, Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -127,9 +127,9 @@ def _is_held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> b
 def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     return (
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
-        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the record's own slope is "
-        f"{slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, and what it differs by counts as "
-        "an effect)"
+        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the slope of a straight line "
+        f"through this record is {slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, "
+        "and what it differs by counts as an effect)"
     )
 
 
@@ -140,7 +140,10 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
             return f"{found} (as simulated: this record does not narrow it)"
-        return f"{found} (simulated {plus_minus(simulated, std)}; this record does not narrow it)"
+        if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
+            return (
+                f"{found} (simulated {plus_minus(simulated, std)}; this record does not narrow it)"
+            )
     off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
@@ -33,6 +34,8 @@ GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffn
 """What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 """Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
+NOTHING_SHARE = 0.01
+"""Of the simulated bend: a record that has less of it has none."""
 NOT_SOUGHT = (
     "no input of the gear was sought that explains the rest: this needs one unit, loaded and unloaded at "
     "both signs of torque, at three torques at least"
@@ -44,7 +47,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
         "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
-        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction),
+        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction, diagnosis.causes),
     )  # fmt: skip
     found = diagnosis.gear_inputs
     if found is not None:
@@ -63,13 +66,21 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     )
 
 
-def _scaled(prediction: Prediction) -> str:
+def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
     """That the curve of the record bends less or more, as its slope is; "" where it bends as simulated."""
     if prediction.bend is None or prediction.measured_bend is None:
         return ""
     most = max(map(abs, prediction.measured_bend.angle_arcsec))
-    said = f"; in this record by up to {most:.3g} arcsec"
-    return said if prediction.lost_bend else f"{said}, scaled by the same factor as its slope"
+    whole = max(map(abs, prediction.bend.angle_arcsec))
+    if prediction.lost_bend is None:
+        return (
+            f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
+        )
+    part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
+    said = f"; of this bend {part} is in this record"
+    if HARDENING in (c.id for c in causes):
+        said += f". What else bends its curve is counted as {title_of(HARDENING)}"
+    return said
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:

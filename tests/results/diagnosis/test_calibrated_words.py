@@ -24,6 +24,8 @@ from flexspline.results.diagnosis.data_used import calibrated_sentences
         (62.0, 9.0, "62.0 ± 9.0 (as simulated: this record does not narrow it)"),
         # two stated deviations of 10 off the simulated 60: not as simulated
         (40.0, 9.0, "40.0 ± 9.0 (simulated 60 ± 10; this record does not narrow it)"),
+        # surely another one, though not known any better
+        (20.0, 9.0, "20.0 ± 9.0 (simulated 60 ± 10, −4.0 standard deviations)"),
         (40.0, 2.0, "40.0 ± 2.0 (simulated 60 ± 10, −2.0 standard deviations)"),
     ],
 )
