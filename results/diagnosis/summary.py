@@ -159,15 +159,17 @@ def _said(cause: NamedCause, only: str) -> str:
 
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
-    told = [
-        f"{cause_title(c)} cannot be distinguished from {joined(map(title_of, c.alternatives), 'or')}"
-        for c in causes
-        if c.alternatives
-    ]
+    told = []
+    for place, c in enumerate(causes):
+        said = {e.id for e in causes[:place] if c.id in e.alternatives}
+        others = [other for other in c.alternatives if other not in said]
+        if others:
+            whom = joined(map(title_of, others), "or")
+            told.append(f"{cause_title(c)} cannot be distinguished from {whom}")
     told += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
-        if not is_significant(c)
+        if not is_significant(c) and not c.alternatives
     ]
     return "; ".join(told)
 

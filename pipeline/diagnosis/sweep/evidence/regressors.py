@@ -160,7 +160,7 @@ def design_matrix(
 def _nuisance_regressor(
     rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: FitContext
 ) -> Regressor:
-    alike = sum(r.channel == rival.channel for r in rivals)
+    alike = sum((r.channel, r.apart) == (rival.channel, rival.apart) for r in rivals)
     k = rival.columns.shape[1]
     prior = np.full(k, rival.spread * rig.scale_arcsec)
     return Regressor(

@@ -69,6 +69,8 @@ class NuisanceTerm:
     against: frozenset[str] = frozenset()
     """Causes beside which it does not stand: it is their opposite, or all that they are and more, and the two
     would cancel."""
+    apart: bool = False
+    """Whether it shares its channel's prior with such terms alone: it is like none of the others."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,7 @@ class _NuisanceKind:
     positive: bool = False
     against: frozenset[str] = frozenset()
     spread: float = NUISANCE_SPREAD
+    apart: bool = False
 
 
 def nuisance_terms(
@@ -96,7 +99,7 @@ def nuisance_terms(
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
     if step is not None:
         kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
-    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump)) for bump in bumps))
+    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump), apart=True) for bump in bumps))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
@@ -119,6 +122,7 @@ def nuisance_terms(
                         kind.spread,
                         kind.positive,
                         kind.against,
+                        kind.apart,
                     )
                 )
     return found
@@ -161,13 +165,13 @@ NUISANCE_KINDS = (
     _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),
     _NuisanceKind(over_time, less=_of_lags, against=frozenset({DRIFT})),
     _NuisanceKind(changing_stiffness),
-    _NuisanceKind(changing_gain),
+    _NuisanceKind(changing_gain, apart=True),
     _NuisanceKind(waves_and_steps, less=_of_lags),
     _NuisanceKind(over_cycle),
     _NuisanceKind(over_temperature),
     _NuisanceKind(over_position),
     _NuisanceKind(over_turns),
-    _NuisanceKind(changing_friction),
+    _NuisanceKind(changing_friction, apart=True),
     _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
     _NuisanceKind(over_unit),
     _NuisanceKind(giving_way, positive=True),
