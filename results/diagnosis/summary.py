@@ -185,7 +185,10 @@ def _beside(causes: Sequence[NamedCause]) -> str:
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
-    known = f" Also identified: {_listed(outcome.causes)}." if outcome.causes else ""
+    sure = [c for c in outcome.causes if not c.alternatives]
+    known = f" Also identified: {_listed(sure)}." if sure else ""
+    if open_ := [c for c in outcome.causes if c.alternatives]:
+        known += f" Besides, {_rivals(open_)}."
     if specimens:
         what = "; ".join(map(structure_words, outcome.unexplained))
         return f"There is structure that no known cause explains: {what}.{known}"

@@ -181,3 +181,15 @@ def test_two_that_stand_for_each_other_are_said_once() -> None:
     assert said.count("cannot be distinguished from") == 2
     assert "distinguished from drift of the angle reading or rate dependence" in said
     assert "suspected" not in said
+
+
+def test_beside_an_unknown_effect_what_is_not_decided_is_not_identified() -> None:
+    lag = NamedCause(
+        "rate_dependence", 0.5, ("friction_hysteresis",), 1.2, 0.1, "arcsec per N·m/s", 9.0, 1.0
+    )
+    left = Unexplained("temperature_C", 3.0, 1e-6, (UnnamedForm("changing_loop"),))
+    outcome = DiagnosisOutcome("unknown", (lag,), (left,))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = summary(Diagnosis(DESIGN, KINDS["sweep"], prediction, outcome))
+    assert "identified" not in said
+    assert "cannot be distinguished from friction hysteresis" in said

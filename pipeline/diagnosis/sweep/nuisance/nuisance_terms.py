@@ -99,7 +99,7 @@ def nuisance_terms(
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
     if step is not None:
         kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
-    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump), apart=True) for bump in bumps))
+    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump)) for bump in bumps))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
@@ -165,7 +165,7 @@ NUISANCE_KINDS = (
     _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),
     _NuisanceKind(over_time, less=_of_lags, against=frozenset({DRIFT})),
     _NuisanceKind(changing_stiffness),
-    _NuisanceKind(changing_gain, apart=True),
+    _NuisanceKind(changing_gain),
     _NuisanceKind(waves_and_steps, less=_of_lags),
     _NuisanceKind(over_cycle),
     _NuisanceKind(over_temperature),
