@@ -171,7 +171,7 @@ NUISANCE_KINDS = (
     _NuisanceKind(over_temperature),
     _NuisanceKind(over_position),
     _NuisanceKind(over_turns),
-    _NuisanceKind(changing_friction, apart=True),
+    _NuisanceKind(changing_friction, against=frozenset({FRICTION}), apart=True),
     _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
     _NuisanceKind(over_unit),
     _NuisanceKind(giving_way, positive=True),
