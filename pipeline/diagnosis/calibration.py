@@ -34,8 +34,10 @@ class Calibration:
     compliance: Estimate | None = None
 
     def far_off(self, prediction: Prediction, beyond: float = FAR_DEVIATIONS) -> tuple[FarOff, ...]:
-        """The calibrated quantities that lie more than so many of their stated deviations from the
-        simulation."""
+        """The calibrated quantities more than so many of their stated deviations from the simulation.
+
+        And more than as many of their own: a value that the record leaves open is not off.
+        """
         measured = [("gap", self.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)]
         if self.compliance is not None:
             stated = prediction.compliance, prediction.compliance_std
@@ -43,7 +45,7 @@ class Calibration:
         return tuple(
             FarOff(name, found, abs(found.value - simulated) / std)
             for name, found, simulated, std in measured
-            if abs(found.value - simulated) > beyond * std > 0
+            if abs(found.value - simulated) > beyond * max(std, found.std) and std > 0
         )
 
 

@@ -14,6 +14,7 @@ FormKind = Literal[
     "smooth",
     "even_curve",
     "ripple",
+    "bump",
     "softening",
     "less_bend",
     "uneven_loop",
@@ -27,6 +28,8 @@ FormKind = Literal[
     "own_gap",
     "changing_zero",
     "changing_stiffness",
+    "changing_gain",
+    "changing_loop",
     "bent_gap",
     "jumps",
     "comes_back",
@@ -49,12 +52,13 @@ class UnnamedForm:
     Attributes
     ----------
     number : of the unit or specimen that alone has it, from 1; 0: of none. name : that unit's, where the file
-        names it.
+        names it. at_Nm : torque near which it is, of what is in one place.
     """
 
     kind: FormKind
     number: int = 0
     name: str = ""
+    at_Nm: float | None = None
 
 
 @dataclass(frozen=True)

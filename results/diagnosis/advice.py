@@ -59,6 +59,11 @@ SHOWS_STRUCTURE = {
     "growth with the amplitude indicates the cause",
     "torque_amplitude": f"{WITHIN}, each twice",
     "torque_rate": BOTH_RATES,
+    "angle_arcsec": "turn the encoder's housing on the output, or begin at another output angle, and "
+    "repeat the sweep: an error of the encoder then comes at other torques, an effect of the gear at the "
+    "same ones",
+    "direction": "approach each of several torques from below and from above, twice each, and rest there: "
+    "friction leaves a difference that stays, a lag one that goes",
     "temperature_C": OTHER_ORDER,
     "input_angle_deg": POSITIONS,
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",

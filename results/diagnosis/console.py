@@ -15,6 +15,7 @@ from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
     calibrated_words,
     cause_title,
+    free_words,
     magnitude_words,
     noise_words,
     sure_words,
@@ -76,6 +77,8 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
         }
         if outcome.causes:
             errors["with the causes found"] = gain.rmse_after
+        if free := free_words(outcome):
+            errors[free] = gain.rmse_after
         errors[noise_words(gain)] = gain.noise_floor
         for words, value in errors.items():
             lines += row((words, figures_text(value)), (60,), "    ")

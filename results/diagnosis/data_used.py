@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.geometry.listed import joined
-from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS, Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -21,6 +21,8 @@ from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
 """Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+AS_SIMULATED_WITHIN = 0.5
+"""Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
@@ -127,9 +129,9 @@ def _is_held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> b
 def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     return (
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
-        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the record's own slope is "
-        f"{slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, and what it differs by counts as "
-        "an effect)"
+        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the slope of a straight line "
+        f"through this record is {slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, "
+        "and what it differs by counts as an effect)"
     )
 
 
@@ -138,7 +140,12 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
     if not std:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
-        return f"{found} (as simulated: this record does not narrow it)"
+        if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
+            return f"{found} (as simulated: this record does not narrow it)"
+        if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
+            return (
+                f"{found} (simulated {plus_minus(simulated, std)}; this record does not narrow it)"
+            )
     off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 

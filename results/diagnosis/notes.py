@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
@@ -13,6 +14,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
     rounding_of_angle,
@@ -26,12 +28,14 @@ from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_note
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import figures_text, grouped
 
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 """Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
+NOTHING_SHARE = 0.01
+"""Of the simulated bend: a record that has less of it has none."""
 NOT_SOUGHT = (
     "no input of the gear was sought that explains the rest: this needs one unit, loaded and unloaded at "
     "both signs of torque, at three torques at least"
@@ -43,7 +47,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
         "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
-        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction),
+        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction, diagnosis.causes),
     )  # fmt: skip
     found = diagnosis.gear_inputs
     if found is not None:
@@ -62,13 +66,21 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     )
 
 
-def _scaled(prediction: Prediction) -> str:
+def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
     """That the curve of the record bends less or more, as its slope is; "" where it bends as simulated."""
     if prediction.bend is None or prediction.measured_bend is None:
         return ""
     most = max(map(abs, prediction.measured_bend.angle_arcsec))
-    said = f"; in this record by up to {most:.3g} arcsec"
-    return said if prediction.lost_bend else f"{said}, scaled by the same factor as its slope"
+    whole = max(map(abs, prediction.bend.angle_arcsec))
+    if prediction.lost_bend is None:
+        return (
+            f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
+        )
+    part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
+    said = f"; of this bend {part} is in this record"
+    if HARDENING in (c.id for c in causes):
+        said += f". What else bends its curve is counted as {title_of(HARDENING)}"
+    return said
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
@@ -140,6 +152,7 @@ def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> lis
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
     found += _rounding_notes(explained)
     found += _noise_notes(explained)
+    found += _cancelling_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
     if prepared.sweep.read_as.ignored:
@@ -156,6 +169,18 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
         f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
         f"some {1 / (1 - noise.memory):.0f} rows; an effect without a form in torque, time or position "
         "would look the same"
+    ]
+
+
+def _cancelling_notes(explained: ExplainedSweep) -> list[str]:
+    """That terms without a name cancel, and how much they are together."""
+    identified = explained.identified
+    if not terms_cancel(identified):
+        return []
+    return [
+        "the effects without a name cancel in part: together they are "
+        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; their forms and single sizes are not to be "
+        "relied on, and compliance and gap are calibrated without them"
     ]
 
 

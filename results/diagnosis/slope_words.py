@@ -17,10 +17,9 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
     limits = [u.structure for u in diagnosis.outcome.unexplained if u.limit]
     if any(isinstance(limit, FarSlope) for limit in limits):  # it asks for units itself
         return given_words(diagnosis.given)
-    if not all(isinstance(limit, NegativeGap) for limit in limits):
-        return ""
+    at_fault = not all(isinstance(limit, NegativeGap) for limit in limits)  # a rig, not the slope
     hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes, bool(limits))
-    if hint is None:
+    if hint is None or (at_fault and not hint.interchanged):
         return ""
     times = slope_times(hint.slope)
     if hint.interchanged:

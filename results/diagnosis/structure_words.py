@@ -26,12 +26,14 @@ from flexspline.pipeline.diagnosis.sweep.rig_faults.clamp_slip import LOADED_SHA
 from flexspline.pipeline.diagnosis.sweep.rig_faults.crossing_forms import BOTH, DELAY, FILTER
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import title_of
+from flexspline.results.numbers import decimals_for, signed
 
 FORMS: Mapping[tuple[FormKind, str], str] = {
     ("smooth", "torque_Nm"): "a smooth function of torque",
     ("smooth", "time_s"): "a smooth function of time",
     ("smooth", "row"): "a smooth function along the record",
     ("even_curve", "torque_Nm"): "a curve of torque, equal for both signs",
+    ("bump", "torque_Nm"): "a bump of the curve",
     ("ripple", "torque_Nm"): "a ripple over torque",
     ("ripple", "angle_arcsec"): "a ripple over the output angle",
     ("softening", "torque_Nm"): "stiffness that falls with load",
@@ -58,6 +60,10 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
         "input_angle_deg",
     ): "a zero offset that changes with the wave generator's angle, as with an "
     "eccentric encoder at the output",
+    ("changing_loop", "cycle"): "a friction loop whose width changes from cycle to cycle",
+    ("changing_loop", "temperature_C"): "a friction loop whose width changes with temperature",
+    ("changing_gain", "time_s"): "a gain of the angle reading that changes with time",
+    ("changing_gain", "row"): "a gain of the angle reading that changes along the record",
     ("changing_stiffness", "time_s"): "a stiffness that changes with time",
     ("changing_stiffness", "row"): "a stiffness that changes along the record",
     ("changing_stiffness", "cycle"): "a stiffness that changes from cycle to cycle",
@@ -146,6 +152,8 @@ def _form(form: UnnamedForm, channel: str) -> str:
     if form.kind in ("trend", "bend") and (form.kind, channel) not in FORMS:
         return f"a {form.kind} over {channel}"  # a dimension
     said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
+    if form.at_Nm is not None:
+        return f"{said} near {signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2))} N·m"
     if not form.number:
         return said
     return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")

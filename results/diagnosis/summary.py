@@ -159,15 +159,17 @@ def _said(cause: NamedCause, only: str) -> str:
 
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
-    told = [
-        f"{cause_title(c)} cannot be distinguished from {joined(map(title_of, c.alternatives), 'or')}"
-        for c in causes
-        if c.alternatives
-    ]
+    told = []
+    for place, c in enumerate(causes):
+        said = {e.id for e in causes[:place] if c.id in e.alternatives}
+        others = [other for other in c.alternatives if other not in said]
+        if others:
+            whom = joined(map(title_of, others), "or")
+            told.append(f"{cause_title(c)} cannot be distinguished from {whom}")
     told += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
-        if not is_significant(c)
+        if not is_significant(c) and not c.alternatives
     ]
     return "; ".join(told)
 
@@ -183,7 +185,10 @@ def _beside(causes: Sequence[NamedCause]) -> str:
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
-    known = f" Also identified: {_listed(outcome.causes)}." if outcome.causes else ""
+    sure = [c for c in outcome.causes if not c.alternatives]
+    known = f" Also identified: {_listed(sure)}." if sure else ""
+    if open_ := [c for c in outcome.causes if c.alternatives]:
+        known += f" Besides, {_rivals(open_)}."
     if specimens:
         what = "; ".join(map(structure_words, outcome.unexplained))
         return f"There is structure that no known cause explains: {what}.{known}"

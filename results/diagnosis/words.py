@@ -6,8 +6,9 @@ from math import log
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
+from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, DiagnosisOutcome, Gain, NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
+from flexspline.pipeline.diagnosis.sweep.calibrated_residual import ALLOWED_SIGMAS
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.numbers import decimals_for, figures_text, grouped
 
@@ -119,7 +120,19 @@ def cause_title(cause: NamedCause) -> str:
 
 def calibrated_words(gain: Gain) -> str:
     """What was fitted beside the causes: of specimens only the modulus is free."""
-    return "Young's modulus fitted" if gain.unit == "%" else "stiffness and gap calibrated"
+    if gain.unit == "%":
+        return "Young's modulus fitted"
+    if gain.held_out.each:  # end points
+        return "stiffness and gap calibrated"
+    return f"stiffness and gap calibrated within {ALLOWED_SIGMAS:g} stated deviations"
+
+
+def free_words(outcome: DiagnosisOutcome) -> str:
+    """Of a record without causes, how its calibration may move so that it is the one stated; "" else."""
+    gain = outcome.gain
+    if gain is None or gain.held_out.each or outcome.verdict != "consistent":
+        return ""
+    return "stiffness and gap calibrated without that limit"
 
 
 def noise_words(gain: Gain) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from flexspline.geometry.percent import percent_of_all
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import calibrated_words, noise_words
+from flexspline.results.diagnosis.words import calibrated_words, free_words, noise_words
 from flexspline.results.numbers import figures_text
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
 from flexspline.results.sentences import capital
@@ -15,18 +15,18 @@ from flexspline.results.sentences import capital
 
 def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     """On cycles, positions or units between others."""
-    gain, found = outcome.gain, bool(outcome.causes)
+    gain = outcome.gain
     if gain is None:
         return
     yield Heading("Prediction error on data not used in the fit")
     yield Paragraph(f"Held out: {left_out_words(gain.held_out)}.")
     yield Table(
         columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
-        rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
+        rows=tuple((name, figures_text(value)) for name, value in _errors(outcome, gain)),
     )
     above = gain.rmse_before**2 - gain.noise_floor**2
     share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
-    if found and share > 0:
+    if outcome.causes and share > 0:
         yield Paragraph(
             f"The causes found explain {percent_of_all(share)} of the mean square error above "
             "the noise floor."
@@ -56,10 +56,12 @@ def errors_at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
     )  # fmt: skip
 
 
-def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
+def _errors(outcome: DiagnosisOutcome, gain: Gain) -> Iterable[tuple[str, float]]:
     zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
     yield f"The simulation as designed{zeroed}", gain.rmse_before
     yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
-    if found:
+    if outcome.causes:
         yield "With the causes found", gain.rmse_after
+    if free := free_words(outcome):
+        yield capital(free), gain.rmse_after
     yield f"{capital(noise_words(gain))}, the least to expect", gain.noise_floor

@@ -31,6 +31,7 @@ from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import
     loop_tells,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import magnitudes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.shared_size import shared_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rig_faults.torque_zero_drift import zero_moves
 
@@ -64,6 +65,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
+        std[c] = hypot(std[c], shared_std(identified, c, magnitude, rivals))
         found.append(
             NamedCause(
                 c,

@@ -88,6 +88,12 @@ def test_a_quantity_far_from_the_simulation_is_said_with_its_distance() -> None:
     assert (soft.quantity, soft.deviations) == ("compliance", pytest.approx(4.0))
 
 
+def test_a_value_that_the_record_leaves_open_lies_nowhere() -> None:
+    """5 of the stated deviations from 60 ± 10, but only 2.8 of its own."""
+    assert Calibration(Estimate(10.0, 18.0), False).far_off(PREDICTION) == ()
+    assert Calibration(Estimate(10.0, 16.0), False).far_off(PREDICTION) != ()
+
+
 def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
     """A right form, but a gap 3.5 of the stated deviations too wide: evidence that does not name it."""
     phase = (np.arange(180) + 0.5) / 60

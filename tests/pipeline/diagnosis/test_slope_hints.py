@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +15,15 @@ from mislabelled import NONE, Fault, mislabelled
 from typer.testing import CliRunner
 
 from flexspline.geometry.load import design_from, load_design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
-from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.slope_hints import slope_hint, slope_off
+from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.summary import summary
 
@@ -210,6 +213,38 @@ def test_a_stated_stiffness_is_doubted_beside_the_units(tmp_path: Path) -> None:
     found = diagnose_file(DESIGN, record(tmp_path), *ten, given=(f"--Kb {ten[0]:g}",))
     assert found.verdict == "unknown"
     assert f"Or check the stiffness given: --Kb {ten[0]:g} (N·m/rad)." in summary(found)
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [LateAngle("filter", 2.0, 0.1, 5.0), BackwardLoop(6.0, 5, None, None, None)],
+)
+def test_interchanged_columns_are_asked_for_beside_a_rig_s_fault(
+    fault: LateAngle | BackwardLoop, tmp_path: Path
+) -> None:
+    """Of 0.6 arcsec per N·m: each reading taken for the other has a slope nearly three times as large."""
+    K = 2 * ARCSEC_PER_RAD / 0.6
+    gap = prediction_of(XB1, K, K).gap_arcsec
+    torque = 150 * np.tile(np.interp(np.arange(100) / 100, [0, 0.25, 0.75, 1], [0, 1, -1, 0]), 4)
+    angle = 0.6 * torque + gap / 2 * np.tanh(torque / 3)
+    angle += np.random.default_rng(2).normal(0, 0.4, len(torque))
+    found = {}
+    for swapped in (True, False):
+        columns = (angle, torque) if swapped else (torque, angle)
+        lines = [
+            f"{i // 100},{i},{t:.3f},{a:.3f}" for i, (t, a) in enumerate(zip(*columns, strict=True))
+        ]
+        path = tmp_path / f"{swapped}.csv"
+        path.write_text(
+            "\n".join(["cycle,time_s,torque_Nm,angle_arcsec", *lines]), encoding="utf-8"
+        )
+        diagnosis = diagnose_file(XB1, path, K, K)
+        late = Unexplained("torque_rate", 5.0, 0.0, fault)
+        outcome = DiagnosisOutcome("unknown", (), (late,))
+        found[swapped] = summary(replace(diagnosis, outcome=outcome))
+    assert found[True].endswith("interchanged it would be near: check the columns.")
+    assert "interchanged" not in found[False]
+    assert "--against gear" not in found[False]
 
 
 def test_a_turned_sign_is_no_stiffness_s_fault(tmp_path: Path) -> None:

@@ -28,6 +28,15 @@ def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
     assert "_" not in said
 
 
+@pytest.mark.parametrize("channel", ["angle_arcsec", "direction"])
+def test_nothing_is_asked_for_that_a_rig_cannot_do(channel: str) -> None:
+    """With the wave generator locked the output angle is the answer: it cannot be varied alone."""
+    form = (UnnamedForm("ripple" if channel == "angle_arcsec" else "leading"),)
+    said = why(NextMeasurement(channel, "find_structure", structure=form), "sweep")
+    assert "vary it alone" not in said
+    assert "housing" in said or "rest there" in said
+
+
 def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
     prediction = Prediction(10.0, 0.0, 70.0, 0.0)
     calibration = Calibration(Estimate(70.0, 0.1), False, Estimate(10.0, 0.01))
@@ -70,7 +79,7 @@ def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
     found = DiagnosisOutcome("unknown")
     said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
     assert "does not narrow" not in said
-    assert "the record's own slope is 1.54, 6.49 times stiffer" in said
+    assert "the slope of a straight line through this record is 1.54, 6.49 times stiffer" in said
     # a compliance that follows the slope says it by itself
     moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
     said = calibrated_sentences(moved, prediction, found, SlopeRatio(0.86, 0.85, 0.87))

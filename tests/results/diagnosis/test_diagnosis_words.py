@@ -165,3 +165,31 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
     assert loop["magnitude"] == "12.00 ± 0.50 arcsec wide at T = 0"
     assert load["sure"] == "beyond doubt, size uncertain"
+
+
+def test_two_that_stand_for_each_other_are_said_once() -> None:
+    friction = NamedCause(
+        "friction_hysteresis", 0.5, ("rate_dependence",), 1.7, 1.6, "arcsec", 9.0, 1.0
+    )
+    lag = NamedCause("rate_dependence", 0.5, ("friction_hysteresis",), 0.1, 0.06, "1", 9.0, 1.0)
+    wear = NamedCause(
+        "wear", 0.6, ("sensor_drift", "rate_dependence"), 1.0, 0.1, "arcsec/cycle", 9.0, 0.5
+    )
+    outcome = DiagnosisOutcome("ambiguous", (friction, lag, wear))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = summary(Diagnosis(DESIGN, KINDS["sweep"], prediction, outcome))
+    assert said.count("cannot be distinguished from") == 2
+    assert "distinguished from drift of the angle reading or rate dependence" in said
+    assert "suspected" not in said
+
+
+def test_beside_an_unknown_effect_what_is_not_decided_is_not_identified() -> None:
+    lag = NamedCause(
+        "rate_dependence", 0.5, ("friction_hysteresis",), 1.2, 0.1, "arcsec per N·m/s", 9.0, 1.0
+    )
+    left = Unexplained("temperature_C", 3.0, 1e-6, (UnnamedForm("changing_loop"),))
+    outcome = DiagnosisOutcome("unknown", (lag,), (left,))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = summary(Diagnosis(DESIGN, KINDS["sweep"], prediction, outcome))
+    assert "identified" not in said
+    assert "cannot be distinguished from friction hysteresis" in said

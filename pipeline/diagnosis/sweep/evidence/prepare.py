@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.regressors import (
     FrictionAhead,
     design_matrix,
 )
+from flexspline.pipeline.diagnosis.sweep.local_bump import local_bumps
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
 from flexspline.pipeline.diagnosis.sweep.zero_jump import sudden_step
 
@@ -115,7 +116,13 @@ def prepare(
         sweep,
         prediction,
         rig,
-        design_matrix(rig, _knowable(sweep), carried, sudden_step(history, target, kept)),
+        design_matrix(
+            rig,
+            _knowable(sweep),
+            carried,
+            sudden_step(history, target, kept),
+            local_bumps(history, target, kept),
+        ),
         target,
         kept,
         outlier,

@@ -14,6 +14,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -139,10 +140,12 @@ def design_matrix(
     known: dict[str, Cause],
     ahead: FrictionAhead | None = None,
     step: int | None = None,
+    bumps: Sequence[Bump] = (),
 ) -> DesignMatrix:
     """Evaluate every shape of every cause, and every nuisance term, on a rig's record.
 
-    `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`).
+    `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`). `bumps` : the
+    likeliest of the curve over the torque (`../local_bump.py`).
     """
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
@@ -161,17 +164,17 @@ def design_matrix(
             )
             blocks.append(block.astype(np.float32))
             width += k
-    rivals = nuisance_terms(rig, step)
-    alike = Counter(rival.channel for rival in rivals)
+    rivals = nuisance_terms(rig, step, bumps)
+    alike = Counter((rival.channel, rival.apart) for rival in rivals)
     for rival in rivals:
-        terms.append(_nuisance_regressor(rival, alike[rival.channel], width, rig))
+        terms.append(_nuisance_regressor(rival, alike[rival.channel, rival.apart], width, rig))
         blocks.append(rival.columns.astype(np.float32))
         width += rival.columns.shape[1]
     return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms), ahead)
 
 
 def _nuisance_regressor(rival: NuisanceTerm, alike: int, at: int, rig: FitContext) -> Regressor:
-    """One of `alike` terms of its channel."""
+    """One of `alike` terms that share the prior of its channel."""
     k = rival.columns.shape[1]
     prior = np.full(k, rival.spread * rig.scale_arcsec)
     return Regressor(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from math import hypot, sqrt
 
@@ -11,7 +10,12 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR
+from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
+    terms_cancel,
+    without_unnamed,
+)
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
+from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_changes
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
 
@@ -22,8 +26,30 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     The deviations have four parts: that of the posterior; that of the torque of friction ahead of the gap,
     for which the posterior holds; the mean distance of other shapes' fits; and, of the compliance, what
     friction takes at the ends of its loop, or the load at which a soft wind-up is as stiff as simulated: each
-    is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states.
+    is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states,
+    or than it is off.
+
+    Beside terms without a name that cancel each other any compliance and gap fit. Then they are those of the
+    simulation with the named causes alone, and differ from the best set's by a deviation more.
     """
+    found = _of_best_set(explained, unit)
+    if not terms_cancel(explained.identified):
+        return found
+    simple = _calibrated(without_unnamed(explained.identified), unit)
+    return replace(
+        simple,
+        gap_arcsec=_apart(simple.gap_arcsec, found.gap_arcsec),
+        compliance=simple.compliance
+        and found.compliance
+        and _apart(simple.compliance, found.compliance),
+    )
+
+
+def _apart(simple: Estimate, other: Estimate) -> Estimate:
+    return Estimate(simple.value, hypot(simple.std, simple.value - other.value))
+
+
+def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     fit = explained.identified.fit
     found = _calibrated(fit, unit)
     slope, gap = _beside_ahead(explained)
@@ -36,7 +62,8 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
         return found
     values = [own.value if o.compliance is None else o.compliance.value for o in others]
     away = weight @ np.abs(np.array(values) - own.value)
-    most = max(own.std, fit.rig.prediction.compliance_std)
+    prediction = fit.rig.prediction
+    most = max(own.std, prediction.compliance_std, abs(own.value - prediction.compliance))
     std = min(hypot(own.std, slope, away, _untold_std(fit, own.value)), most)
     return replace(found, compliance=Estimate(own.value, std))
 
@@ -58,28 +85,14 @@ def _beside_ahead(explained: ExplainedSweep) -> tuple[float, float]:
 
 
 def _untold_std(fit: SweepFit, compliance: float) -> float:
-    """Of a compliance, by shapes that differ in it alone; each counts as the design's stated doubt has it."""
-    prediction = fit.rig.prediction
-    total = 0.0
-    for changes in _changes(fit):
-        off = (np.array([0.0, *changes]) + compliance - prediction.compliance) / np.maximum(
-            prediction.compliance_std, LEAST_PRIOR
-        )
+    """Of a compliance, by shapes that differ in it alone; each counts as the design's stated doubt has it.
+
+    Of a compliance that lies beyond that doubt it is too small; it is then taken as large as the distance.
+    """
+    prediction, total = fit.rig.prediction, 0.0
+    for changes in spring_changes(fit):
+        off = np.array([0.0, *changes]) + compliance - prediction.compliance
+        off /= max(prediction.compliance_std, abs(off[0]), LEAST_PRIOR)
         likely = np.exp((off[0] ** 2 - off[1:] ** 2) / 2).clip(max=1.0)
         total += float(likely @ np.square(changes)) / (1 + float(likely.sum()))
     return sqrt(total)
-
-
-def _changes(fit: SweepFit) -> Iterator[np.ndarray]:
-    """Of each term that has such shapes, by how much each changes the compliance [arcsec per N·m]."""
-    history = fit.rig.history
-    torque = history.torque_Nm
-    for term, amplitudes in zip(
-        fit.regressors, fit.posterior.amplitudes(fit.evidence), strict=True
-    ):
-        others = term.cause.but_for_a_spring(term.shape, fit.rig) if term.cause else []
-        if term.cause is None or not others:
-            continue
-        mine = term.cause.columns(term.shape, history) @ amplitudes
-        left = [mine - term.cause.columns(o, history) @ amplitudes for o in others]
-        yield np.array([float(torque @ own) / float(torque @ torque) for own in left])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -14,17 +12,17 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.decision import weights
-from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.evidence.regressors import shape_key
+from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
+    GaussianEvidence,
+)
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
-from flexspline.pipeline.diagnosis.sweep.magnitudes.between_sets_std import std_over
 from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
 )
+from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_changes
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
 
 SHAPE_NATS = 3.0
@@ -59,7 +57,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if THERMAL in std:
         std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
-        std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
+        std[SERIES] = hypot(std[SERIES], _spring_std(identified))
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
@@ -87,26 +85,15 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
     return fits, weights([c.score / nats for c in alike])
 
 
-def _spring_std(identified: Identification, magnitude: float) -> float:
-    """Standard deviation of a spring's size, by laws of other causes that fit as well with another spring."""
-    others = _but_for_a_spring(identified.search.evidence, identified.best)
-    return std_over(identified, others, SERIES, magnitude)
+def _spring_std(identified: Identification) -> float:
+    """Of a spring's size [%], by laws of other causes that fit as well and leave it another one.
 
-
-def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[Candidate]:
-    """The best set with a term's shape replaced by one that leaves the spring another size.
-
-    All have the best set's score. No row says whether friction takes torque at a loop's ends, or at which
-    load the stiffness is as simulated. That the prior prefers larger springs is no evidence of the smaller.
+    They count alike: what the prior says of larger springs is no evidence of the smaller.
     """
-    at = {t.shape_key: i for i, t in enumerate(evidence.terms)}
-    for place, i in enumerate(best.terms):
-        term = evidence.terms[i]
-        rig = evidence.columns.rig
-        for shape in term.cause.but_for_a_spring(term.shape, rig) if term.cause else ():
-            other = at.get(shape_key(term.owner, shape))
-            if other is not None:
-                yield replace(best, terms=(*best.terms[:place], other, *best.terms[place + 1 :]))
+    fit = identified.fit
+    changes = np.concatenate([np.empty(0), *spring_changes(fit)])
+    off = 100 * changes / fit.rig.prediction.compliance
+    return float(np.sqrt((off**2).sum() / (1 + len(off))))
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
+from flexspline.pipeline.diagnosis.causes.operators import steadied, stops
 from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import (
@@ -35,8 +37,12 @@ LEAST_BENT = 0.02
 TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
+FRICTION_THRESHOLDS = (0.02, 0.06, 0.15)
+"""Shares of the largest torque at which friction that changes slips, within those of named friction."""
+CHANGING_DEGREE = 3
+"""Of the polynomial by which it changes: a loop that halves with every 17 K is within 1 % of it over 55 K."""
 DEGREES = (1, 2, 3)
-"""Degrees of the polynomial in time of a changing stiffness: steady, with a bend, with a turn."""
+"""Degrees of the polynomial in time of a changing stiffness or gain: steady, with a bend, with a turn."""
 
 
 def _passed(rig: FitContext) -> np.ndarray | None:
@@ -65,6 +71,17 @@ def changing_stiffness(rig: FitContext) -> Made:
     for degree in DEGREES:
         powers = np.column_stack([t**k for k in range(1, degree + 1)])
         yield "time_s", UnnamedForm("changing_stiffness"), torque[:, None] * powers
+
+
+def changing_gain(rig: FitContext) -> Made:
+    """A gain of the angle's channel that changes with time by a polynomial: so does the gap's step."""
+    t = _passed(rig)
+    if t is None:
+        return
+    angle = to_one(rig.prediction.for_race.angle_arcsec(rig.history))
+    for degree in DEGREES:
+        powers = np.column_stack([t**k for k in range(1, degree + 1)])
+        yield "time_s", UnnamedForm("changing_gain"), angle[:, None] * powers
 
 
 def waves_and_steps(rig: FitContext) -> Made:
@@ -126,6 +143,32 @@ def over_temperature(rig: FitContext) -> Made:
     bent = less_fitted(curved, linear)
     if np.std(bent) > LEAST_BENT * np.std(curved):
         yield "temperature_C", UnnamedForm("bent_gap"), bent[:, None]
+
+
+def changing_friction(rig: FitContext) -> Made:
+    """Friction that runs in, or that follows the grease's temperature: loops of another width each time.
+
+    The whole loop is in it: beside one of a single width, which has a name, what changes would be a trace.
+    """
+    history = rig.history
+    thresholds = np.array(FRICTION_THRESHOLDS) * rig.largest_Nm
+    torque = steadied(history, deadband_Nm(history))
+    states = stops(history, torque, thresholds, np.zeros(len(thresholds))) / thresholds
+    temperature = history.temperature_C
+    warm = None
+    if temperature is not None and np.ptp(temperature_without_noise(history)) >= STEADY_K:
+        warm = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
+    for state in states.T:
+        if rig.cycles > 2:
+            number = 2 * history.cycle / (rig.cycles - 1) - 1
+            own = levels(history.cycle.astype(float))
+            for changes in (smooth(number, CHANGING_DEGREE), own):
+                columns = np.column_stack([np.ones(len(number)), changes]) * state[:, None]
+                yield "cycle", UnnamedForm("changing_loop"), columns
+        if warm is not None:
+            changes = smooth(warm, CHANGING_DEGREE)
+            columns = np.column_stack([np.ones(len(warm)), changes]) * state[:, None]
+            yield "temperature_C", UnnamedForm("changing_loop"), columns
 
 
 def zeros_apart(rig: FitContext) -> Made:

@@ -6,7 +6,7 @@ the name of the cause that mimics it best.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -19,7 +19,10 @@ from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
+    changing_friction,
+    changing_gain,
     changing_stiffness,
     over_cycle,
     over_position,
@@ -35,6 +38,7 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.lagged_torque import lagging_t
 from flexspline.pipeline.diagnosis.sweep.nuisance.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.nuisance.torque_nuisance import (
     Made,
+    bump_of,
     leading,
     over_angle,
     over_direction,
@@ -66,6 +70,8 @@ class NuisanceTerm:
     against: frozenset[str] = frozenset()
     """Causes beside which it does not stand: it is their opposite, or all that they are and more, and the two
     would cancel."""
+    apart: bool = False
+    """Whether it shares its channel's prior with such terms alone: it is like none of the others."""
 
 
 @dataclass(frozen=True)
@@ -80,16 +86,21 @@ class _NuisanceKind:
     positive: bool = False
     against: frozenset[str] = frozenset()
     spread: float = NUISANCE_SPREAD
+    apart: bool = False
 
 
-def nuisance_terms(rig: FitContext, step: int | None = None) -> list[NuisanceTerm]:
+def nuisance_terms(
+    rig: FitContext, step: int | None = None, bumps: Sequence[Bump] = ()
+) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
-    `step` : the row from which a jump of the zero is likeliest. Columns have unit rms in the rows that count.
+    `step` : the row from which a jump of the zero is likeliest. `bumps` : those of the curve. Columns have
+    unit rms in the rows that count.
     """
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
     if step is not None:
         kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
+    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump)) for bump in bumps))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
@@ -112,6 +123,7 @@ def nuisance_terms(rig: FitContext, step: int | None = None) -> list[NuisanceTer
                         kind.spread,
                         kind.positive,
                         kind.against,
+                        kind.apart,
                     )
                 )
     return found
@@ -154,11 +166,13 @@ NUISANCE_KINDS = (
     _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),
     _NuisanceKind(over_time, less=_of_lags, against=frozenset({DRIFT})),
     _NuisanceKind(changing_stiffness),
+    _NuisanceKind(changing_gain),
     _NuisanceKind(waves_and_steps, less=_of_lags),
     _NuisanceKind(over_cycle),
     _NuisanceKind(over_temperature),
     _NuisanceKind(over_position),
     _NuisanceKind(over_turns),
+    _NuisanceKind(changing_friction, against=frozenset({FRICTION}), apart=True),
     _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
     _NuisanceKind(over_unit),
     _NuisanceKind(giving_way, positive=True),

@@ -18,6 +18,7 @@ from flexspline.pipeline.diagnosis.measurement.programme_levels import levelled_
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import smooth, wave
 
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
@@ -46,6 +47,12 @@ def over_torque(rig: FitContext) -> Made:
     yield "torque_Nm", UnnamedForm("smooth"), smooth(torque)
     yield "torque_Nm", UnnamedForm("even_curve"), (torque**2)[:, None]
     yield from _ripples(torque, "torque_Nm")
+
+
+def bump_of(rig: FitContext, bump: Bump) -> Made:
+    """A bump of the curve at one torque, as a damaged tooth leaves."""
+    form = UnnamedForm("bump", at_Nm=bump.near_Nm)
+    yield "torque_Nm", form, bump.of(_steady(rig) * rig.largest_Nm)[:, None]
 
 
 def softening(rig: FitContext) -> Made:

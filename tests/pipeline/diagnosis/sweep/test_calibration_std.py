@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from read_sweep import as_read
@@ -10,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
+from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.race.race import run_race
 
 COMPLIANCE, GAP_ARCSEC, LARGEST_Nm = 10.0, 60.0, 2.0
@@ -55,3 +58,44 @@ def test_the_simulation_does_not_decide_what_no_row_tells(deviations: float) -> 
     alone = explained.identified.fit.calibration.compliance
     assert alone is not None
     assert alone.std < 3 * NOISE / (LARGEST_Nm * np.sqrt(n / 3))
+
+
+def beside_sliders(torque: np.ndarray, spring: float, yields_Nm: Sequence[float]) -> np.ndarray:
+    """Twist of a spring [N·m per arcsec] with sliders beside it, each on a spring twice as stiff."""
+    stiff = 2 * spring
+    held, twist, last, found = np.zeros(len(yields_Nm)), 0.0, 0.0, []
+    for now in torque:
+        for step in np.full(8, (now - last) / 8):  # a slider yields within a row
+            free = np.abs(held) < np.array(yields_Nm)
+            free |= np.sign(held) != np.sign(step)
+            move = step / (spring + stiff * free.sum())
+            held = np.where(free, held + stiff * move, held)
+            held = np.clip(held, -np.array(yields_Nm), yields_Nm)
+            twist += move
+        last = now
+        found.append(twist)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("softer", [0.2, 0.3])
+def test_a_spring_beside_sliders_is_within_what_is_stated(softer: float) -> None:
+    """The slope of a slipped branch is the spring's, the chord is stiffer: no row says which is it."""
+    spring = 1 / ((1 + softer) * COMPLIANCE)
+    leg = np.linspace(0, 1, 46)
+    leg = np.concatenate([leg[1:], leg[-2::-1], -leg[1:], -leg[-2::-1]])
+    falling = [2.0, 1.5, 1.0, 0.6, 0.3]
+    torque = np.concatenate([size * leg for size in falling])
+    n, rng = len(torque), np.random.default_rng(9)
+    cycle = np.repeat(np.arange(len(falling)), len(leg))
+    history = History(torque, np.zeros(n, int), cycle, 1.0 * np.arange(n))
+    twist = beside_sliders(torque, spring, [0.02, 0.04, 0.06])
+    sweep = as_read(history, twist + GAP_ARCSEC / 2 * np.sign(torque) + rng.normal(0, 0.15, n))
+    explained = run_race(prepare(sweep, Prediction(COMPLIANCE, 0.25, GAP_ARCSEC, 5.0)))
+    sizes, stds = magnitudes(explained.identified)
+    assert "friction_hysteresis" in sizes
+    if "series_compliance" in explained.identified.named:
+        assert abs(sizes["series_compliance"] - 100 * softer) < 2 * stds["series_compliance"]
+        return
+    found = calibration_of(explained).compliance
+    assert found is not None
+    assert abs(found.value - (1 + softer) * COMPLIANCE) < 2 * found.std
