@@ -17,12 +17,11 @@ from flexspline.pipeline.enclosed_part import bodies_if_any, bodies_of, enclosur
 from flexspline.pipeline.enclosure import answered_within, check_against, overlap, proven_by
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
 from flexspline.pipeline.solid_torsion import (
     SECOND_SECONDS,
     TurnedField,
     TwistedPart,
-    copies_in_rim,
-    most_for_lobes,
     slow_to_confirm,
     twisted,
 )

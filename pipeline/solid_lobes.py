@@ -16,7 +16,8 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
-from flexspline.pipeline.solid_torsion import SOLID_SECONDS, copies_in_rim, most_for_lobes
+from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
+from flexspline.pipeline.solid_torsion import SOLID_SECONDS
 
 MOST_LOBE_ELEMENTS = 100_000
 """Of the quarter or half: 450 000 unknowns. On a thick hat 89 928 took 18 s of the processor for each of the

@@ -28,7 +28,6 @@ from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.solid.torsion_field import FullTorsion, TorsionCorrection, TorsionSolver
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import (
     FIRST_ELEMENTS,
     KINDS,
@@ -38,6 +37,7 @@ from flexspline.pipeline.part_meshes import (
     PartMeshes,
 )
 from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
 
 SOLID_SECONDS = 30.0
 """Of all meshes of a part after the first: with that one and the rest of a command, a minute. Of 100 random
@@ -79,12 +79,6 @@ of 0.1 % took a second mesh."""
 LEAST_COARSE_ELEMENTS = 4_000
 """Of such a mesh: fewer leave too little for the meshes after it, each of twice as many at most. A shaft with
 two holes was known to ± 0.98 % by 2 742, 5 646 and 11 341 elements, to ± 0.21 % by 10 863 and 21 799."""
-RIM_ELEMENTS = 25_000
-"""About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
-the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
-HOLES_ALONE_ELEMENTS = 10_000
-"""The same where the meshes need only tell what holes change: a hat with ten holes is known to ± 0.011 and
-0.014 % by 8 040 elements, to ± 0.010 and 0.013 % by 20 115, for 0.6 s less of the processor each."""
 CONFIRMING_ELEMENTS = 15_000
 """Of a first mesh where bodies of revolution give K within the tolerance: 2 s of the processor. A cup had
 18 813, for 2.5 s; thin, wide flanges with one to three holes 39 303 and 62 940, for 7 and 11 s."""
@@ -149,17 +143,6 @@ def slow_to_confirm(model: PartModel) -> bool:
 
     inputs = {**model.geometry_key, "mesher": model.mesher, "most": CONFIRMING_ELEMENTS}
     return model.context.cache.get("large_first_mesh", inputs, is_large)[0]
-
-
-def copies_in_rim(model: PartModel) -> int:
-    """How many of torsion's sectors make the lobes' and the ellipse's."""
-    return round(sector_of(model.part, "ellipse").degrees / model.sector.degrees)
-
-
-def most_for_lobes(model: PartModel) -> int:
-    """Elements of the quarter or half at most for the lobe cases and the ellipse's picture."""
-    alone = model.context.design.solver.model == "auto"
-    return HOLES_ALONE_ELEMENTS if alone else RIM_ELEMENTS
 
 
 def twisted(

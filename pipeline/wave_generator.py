@@ -20,7 +20,7 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import PartModel
-from flexspline.pipeline.solid_torsion import copies_in_rim
+from flexspline.pipeline.rim_size import copies_in_rim
 
 LARGEST_ELLIPSE_STEP = radians(5)
 """Of elements about the axis [rad]: with the two below, what the peak needs."""

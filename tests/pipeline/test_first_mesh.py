@@ -28,7 +28,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline import part_meshes, part_stiffness, parts, solid_torsion
+from flexspline.pipeline import part_meshes, part_stiffness, parts, rim_size, solid_torsion
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_meshes import MeshedPart, OtherKindError, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
@@ -193,8 +193,8 @@ def test_the_rims_mesh_keeps_within_its_elements(
     cup = AnalysisContext(DESIGN, Cache(tmp_path), Progress()).part("flexspline")
     usual = part_stiffness.rim_mesh(cup).mesh.elements
     copies = 3  # wedges of 30° in the ellipse's quarter
-    assert solid_torsion.copies_in_rim(cup) == copies
-    monkeypatch.setattr(solid_torsion, "HOLES_ALONE_ELEMENTS", copies * usual - 1)
+    assert rim_size.copies_in_rim(cup) == copies
+    monkeypatch.setattr(rim_size, "HOLES_ALONE_ELEMENTS", copies * usual - 1)
     assert part_stiffness.rim_mesh(cup).mesh.elements < usual
 
 

@@ -15,7 +15,7 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.solid_torsion import copies_in_rim
+from flexspline.pipeline.rim_size import copies_in_rim
 
 WIDE = load_design(EXAMPLES / "xb1-40.toml").changed(
     {

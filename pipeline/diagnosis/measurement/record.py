@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,25 +11,17 @@ import numpy as np
 
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
-from flexspline.pipeline.diagnosis.measurement.columns import unit_not_known
 from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step
-from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.held_angle import held_rows
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
 from flexspline.pipeline.diagnosis.measurement.lost_readings import LostReadings
+from flexspline.pipeline.diagnosis.measurement.missing_columns import columns_missing
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings, without_wrong
 
-MEANT = {
-    "unit": "name or number of the gear measured",
-    "specimen": "name or number of the part measured",
-}
-"""What a column of labels holds: "unit" alone reads like a unit of measurement."""
-HEADS_SHOWN = 12
-"""Most columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
 """Fewest rows, and fewest different torques: one more than zero, stiffness and gap."""
 LARGEST_TURN_PER_ROW = 0.01
@@ -175,21 +167,7 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
         ((k, [n for n in names if not table.has(n)]) for k, names in wanted.items()),
         key=lambda pair: len(pair[1]) / len(wanted[pair[0]]),
     )
-    raise _missing(table, missing, kind)
-
-
-def _missing(table: MeasuredTable, missing: Sequence[str], kind: str) -> MeasurementError:
-    """The error for columns that a kind of measurement needs: what they hold, and what the file has."""
-    for name in missing:
-        for head in table.read_as.ignored:
-            if (why := unit_not_known(head, name)) is not None:
-                return MeasurementError(table.path, table.read_as.head_line, why)
-    named = (f"{name} ({MEANT[name]})" if name in MEANT else name for name in missing)
-    reason = f"column {', '.join(named)} is missing for {kind}"
-    heads = [h for h in table.read_as.heads if h][:HEADS_SHOWN]
-    has = f"the header in line {table.read_as.head_line} has: {', '.join(heads)}"
-    parted = "; separate the columns by commas, semicolons or tabs" if len(heads) == 1 else ""
-    return table.refuse(None, f"{reason}; {has}{parted}")
+    raise columns_missing(table, missing, kind)
 
 
 def _names(table: MeasuredTable, *columns: str) -> tuple[str, ...] | None:
@@ -262,7 +240,7 @@ def _end_points(table: MeasuredTable) -> EndPoints:
     units = _names(table, "unit", "specimen")
     missing = [*([] if units else ["unit"]), *([] if table.has("torque_Nm") else ["torque_Nm"])]
     if units is None or missing:
-        raise _missing(table, missing, "end points")
+        raise columns_missing(table, missing, "end points")
     torque = table.numbers["torque_Nm"]
     bad = np.flatnonzero(~((torque >= TORQUE_Nm.low) & (torque <= TORQUE_Nm.high)))
     if len(bad):
