@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,10 +54,13 @@ def refined_within(mesh: MeridianMesh, boxes: Sequence[Box], share: float = 1.0)
     return refined_while(mesh, too_long)
 
 
-def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:
-    """As `refined` with the mask `once` (m,), then the pieces of the triangles `again` (m,) once more."""
-    finer, parent = refined_with_parents(mesh, once)
-    return refined(finer, again[parent])
+def refined_repeatedly(mesh: MeridianMesh, marked: Iterable[np.ndarray]) -> MeridianMesh:
+    """As `refined` with the first mask (m,), then the pieces of the triangles of the next, and so on."""
+    piece_of = np.arange(mesh.elements)
+    for mask in marked:
+        mesh, parent = refined_with_parents(mesh, mask[piece_of])
+        piece_of = piece_of[parent]
+    return mesh
 
 
 def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:

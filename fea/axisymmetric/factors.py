@@ -10,17 +10,15 @@ from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
 from flexspline.fea.kept_entries import EntryPlaces, KeptEntries, starts_of
-from flexspline.fea.pardiso import PardisoFactors, pardiso
+from flexspline.fea.pardiso import PLANE_SETTINGS, PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
-PARDISO_AT_ONCE_FROM = 8_000
-"""Unknowns from which oneMKL's Pardiso, if it is installed, is faster than SuperLU even for a single
-matrix: 147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of
-that, on a busy machine. Below, Pardiso is used from the second matrix with the same places on: of 1 200,
-1 600, 4 400 and 5 800 unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0,
-2.7, 11.3 and 15.1, and 0.5, 0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress
-and about five for lobes."""
+PARDISO_AT_ONCE_FROM = 2_000
+"""Unknowns from which oneMKL's Pardiso, if it is installed, is as fast as SuperLU even for a single matrix:
+3.2 ms (SuperLU) and 3.7 (Pardiso, ordering included) for 2 200 unknowns of a harmonic, 13.3 and 10.2 for
+5 800, one core. Below, Pardiso is used from the second matrix with the same places on, by an ordering that
+it has: 0.7 ms for 2 200. A mesh has one matrix for stress and about five for lobes."""
 LARGEST_RESIDUAL = 1e-3
 """Largest ‖Ku − f‖/‖f‖ of SuperLU's solution. It was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
 thin ring with a condition number of 1e10, and 0.015 to 5 for grids of springs that were held nowhere."""
@@ -93,7 +91,7 @@ class PatternSolver:
                 again = before is not None and before.are_of(matrix)
                 if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
                     return _checked(matrix, loads)
-                last = PardisoFactors(matrix, single=False)
+                last = PardisoFactors(matrix, single=False, settings=PLANE_SETTINGS)
             self._factors = last
             return last.solve(loads)
 

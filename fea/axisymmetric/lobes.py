@@ -16,7 +16,7 @@ from math import pi, sin
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.bisection import Box, refined_twice
+from flexspline.fea.axisymmetric.bisection import Box, refined_repeatedly
 from flexspline.fea.axisymmetric.finer_in_boxes import finer_in_boxes
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
@@ -199,7 +199,8 @@ class _RevolvedLobes:
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         error = self.found.error
-        return refined_twice(mesh, bulk(error, LOBE_BULK), bulk(error, LOBE_TWICE_SHARE))
+        shares = (LOBE_BULK, LOBE_TWICE_SHARE)
+        return refined_repeatedly(mesh, [bulk(error, share) for share in shares])
 
 
 def solve_lobes(

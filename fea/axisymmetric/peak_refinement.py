@@ -140,7 +140,7 @@ class _MeshedField:
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         found, peak = self._found, self._peak
         allowed = LOCAL_ERROR_SHARE * self._problem.tolerance * peak.mises_MPa
-        wrong = peak.counted & (found.misfit > allowed)
+        wrong = peak.counted & (found.largest_misfit > allowed)
         # far below the peak, stresses may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
         marked = bulk(found.error, PEAK_BULK) | (wrong & near) | self._coarse

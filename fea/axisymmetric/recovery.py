@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,15 +32,33 @@ class Recovered:
     Attributes
     ----------
     nodal : (count, 6) smoothed amplitudes at the P2 nodes [MPa].
-    energy : (m,) ∫σ:C⁻¹:σ of each triangle, whole circle [N·mm].
-    error : (m,) the same of smoothed less raw stress.
-    misfit : (m,) largest von Mises stress of smoothed less raw stress in each triangle [MPa].
+    raw, misfit : stresses, and smoothed less raw ones, at the quadrature points (m, q) [MPa].
+    volume : of those points, whole circle [mm³].
     """
 
     nodal: np.ndarray
-    energy: np.ndarray
-    error: np.ndarray
-    misfit: np.ndarray
+    raw: Parts
+    misfit: Parts
+    volume: np.ndarray
+    material: Elastic
+
+    @cached_property
+    def energy(self) -> np.ndarray:
+        """(m,) ∫σ:C⁻¹:σ of each triangle, whole circle [N·mm]."""
+        return self._twice_energy(self.raw)
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """(m,) the same of smoothed less raw stress."""
+        return self._twice_energy(self.misfit)
+
+    @cached_property
+    def largest_misfit(self) -> np.ndarray:
+        """(m,) largest von Mises stress of smoothed less raw stress in each triangle [MPa]."""
+        return np.sqrt(np.maximum(*mises_parts(self.misfit)).max(axis=1))
+
+    def _twice_energy(self, stress: Parts) -> np.ndarray:
+        return np.asarray((self.volume * _twice_density(stress, self.material)).sum(axis=1))
 
 
 def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) -> Recovered:
@@ -52,13 +71,7 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
     nodal = np.zeros((s.count, 6))
     nodal[:, list(at_nodes)] = nodal_average(s.count, len(at_nodes), [(s.dofs, weight, local)])
     misfit = {k: s.values(nodal[:, k]) - part for k, part in raw.items()}
-    volume = wave.around * s.weights * s.r
-    return Recovered(
-        nodal,
-        (volume * _twice_density(raw, material)).sum(axis=1),
-        (volume * _twice_density(misfit, material)).sum(axis=1),
-        np.sqrt(_mises_squared(misfit).max(axis=1)),
-    )
+    return Recovered(nodal, raw, misfit, wave.around * s.weights * s.r, material)
 
 
 def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
@@ -99,10 +112,6 @@ def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:
     twice = sum((1 if k in DIRECT else 2) * part**2 for k, part in stress.items())
     trace = sum((stress[k] for k in DIRECT if k in stress), np.zeros(1))
     return (twice - lam / (3 * lam + 2 * mu) * trace**2) / (2 * mu)
-
-
-def _mises_squared(stress: Parts) -> np.ndarray:
-    return np.maximum(*mises_parts(stress))
 
 
 def mises_parts(stress: Parts) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from example_cup import CUP
 
-from flexspline.fea.axisymmetric.bisection import refined, refined_twice
+from flexspline.fea.axisymmetric.bisection import refined, refined_repeatedly
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
 from flexspline.fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
 from flexspline.geometry.meridian import meridian_of
@@ -53,7 +53,7 @@ def test_refinement_stays_conforming_and_well_shaped():
     assert angles(mesh.points, mesh.triangles).min() > 0.95 * SMALLEST_ANGLE / 2
 
 
-def test_what_is_refined_twice_is_cut_in_sixteen():
+def test_what_is_refined_repeatedly_is_cut_in_sixteen():
     """Of a square's even mesh the middle, and nothing else."""
     square = [(1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)]
     ends = [*square[1:], square[0]]
@@ -63,7 +63,7 @@ def test_what_is_refined_twice_is_cut_in_sixteen():
     centre = mesh.points[mesh.triangles].mean(axis=1)
     again = np.abs(centre - (1.5, 0.5)).max(axis=1) < 0.2
     once = np.abs(centre - (1.5, 0.5)).max(axis=1) < 0.3
-    finer = refined_twice(mesh, once, again)
+    finer = refined_repeatedly(mesh, [once, again])
     area = signed_areas(mesh.points, mesh.triangles).max()
     pieces = signed_areas(finer.points, finer.triangles)
     inside = np.abs(finer.points[finer.triangles].mean(axis=1) - (1.5, 0.5)).max(axis=1)

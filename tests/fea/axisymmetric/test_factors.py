@@ -5,6 +5,7 @@ Small matrices are ordered when their places come a second time.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -16,7 +17,7 @@ from flexspline.fea.axisymmetric.factors import PARDISO_AT_ONCE_FROM, PatternSol
 from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 
-WIDTH, WIDER = 80, 100
+WIDTH, WIDER = 40, 60
 
 needs_mkl = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
 
@@ -34,9 +35,9 @@ def orderings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     made: list[int] = []
 
     class Seen(PardisoFactors):
-        def __init__(self, matrix: csr_matrix, single: bool) -> None:
+        def __init__(self, matrix: csr_matrix, single: bool, settings: Mapping[int, int]) -> None:
             made.append(matrix.shape[0])
-            super().__init__(matrix, single)
+            super().__init__(matrix, single, settings)
 
     monkeypatch.setattr(factors, "PardisoFactors", Seen)
     return made
