@@ -14,14 +14,15 @@ from flexspline.fea.pardiso import PLANE_SETTINGS, PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
-PARDISO_AT_ONCE_FROM = 2_000
-"""Unknowns from which oneMKL's Pardiso, if it is installed, is as fast as SuperLU even for a single matrix:
-3.2 ms (SuperLU) and 3.7 (Pardiso, ordering included) for 2 200 unknowns of a harmonic, 13.3 and 10.2 for
-5 800, one core. Below, Pardiso is used from the second matrix with the same places on, by an ordering that
-it has: 0.7 ms for 2 200. A mesh has one matrix for stress and about five for lobes."""
+PARDISO_AT_ONCE_FROM = 800
+"""Unknowns from which a matrix is Pardiso's, if it is installed, the first time its places are seen: harmonics
+follow for the same places in 0.2 ms of 800, by an ordering that Pardiso has. One matrix of 800, 2 200, 5 800
+unknowns takes 1.1, 3.7, 10.2 ms by Pardiso, ordering included, 0.9, 3.2, 13.3 by SuperLU, one core. Smaller
+ones are mostly torsion's, one for a mesh."""
 LARGEST_RESIDUAL = 1e-3
-"""Largest ‖Ku − f‖/‖f‖ of SuperLU's solution. It was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
-thin ring with a condition number of 1e10, and 0.015 to 5 for grids of springs that were held nowhere."""
+"""Largest ‖Ku − f‖/‖f‖ of a solution. SuperLU's was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
+thin ring with a condition number of 1e10, and by either solver
+0.0013 to 5 for grids of springs that were held nowhere."""
 
 
 @dataclass(frozen=True)
@@ -80,27 +81,27 @@ class PatternSolver:
         Raises
         ------
         RuntimeError : K is singular, in SuperLU's words.
-        SolveError : it is, in Pardiso's; or the residual of SuperLU's solution says so.
+        SolveError : it is, in Pardiso's; or the residual of the solution says so.
         """
-        if pardiso() is None:
-            return _checked(matrix, loads)
+        found = solved(matrix, loads) if pardiso() is None else self._by_pardiso(matrix, loads)
+        if not relative_residual(matrix, found, loads) <= LARGEST_RESIDUAL:
+            raise SolveError(
+                "the direct solver left a residual: part of the model may be unsupported"
+            )
+        return found
+
+    def _by_pardiso(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
+        """K⁻¹ f; by SuperLU where K is small and its places are new."""
         with self._lock:
             last, self._factors = self._factors, None
             if last is None or not last.replace(matrix):
                 before, self._places = self._places, EntryPlaces.of(matrix)
                 again = before is not None and before.are_of(matrix)
                 if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
-                    return _checked(matrix, loads)
+                    return solved(matrix, loads)
                 last = PardisoFactors(matrix, single=False, settings=PLANE_SETTINGS)
             self._factors = last
             return last.solve(loads)
-
-
-def _checked(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
-    found = solved(matrix, loads)
-    if not relative_residual(matrix, found, loads) <= LARGEST_RESIDUAL:
-        raise SolveError("the direct solver left a residual: part of the model may be unsupported")
-    return found
 
 
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:

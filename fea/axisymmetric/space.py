@@ -65,7 +65,12 @@ class Space:
 
     def values(self, field: np.ndarray) -> np.ndarray:
         """A field (count,) at the quadrature points (m, q), where no gradient is asked for."""
-        return field[self.dofs] @ shape_functions(self.basis.X)
+        return field[self.dofs] @ self._shape_functions
+
+    @cached_property
+    def _shape_functions(self) -> np.ndarray:
+        """At the quadrature points (6, q)."""
+        return shape_functions(self.basis.X)
 
 
 def curved(mesh: MeridianMesh, degree: int) -> Space:
