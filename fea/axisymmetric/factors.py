@@ -15,14 +15,14 @@ from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 PARDISO_AT_ONCE_FROM = 800
-"""Unknowns from which a matrix is Pardiso's, if it is installed, the first time its places are seen: harmonics
-follow for the same places in 0.2 ms of 800, by an ordering that Pardiso has. One matrix of 800, 2 200, 5 800
-unknowns takes 1.1, 3.7, 10.2 ms by Pardiso, ordering included, 0.9, 3.2, 13.3 by SuperLU, one core. Smaller
-ones are mostly torsion's, one for a mesh."""
+"""Unknowns from which a matrix is Pardiso's, if it is installed, the first time its places are seen:
+harmonics follow for the same places in 0.2 ms of 800, by an ordering that Pardiso has. One matrix of 800,
+2 200, 5 800 unknowns takes 1.1, 3.7, 10.2 ms by Pardiso, ordering included, 0.9, 3.2, 13.3 by SuperLU, one
+core. Smaller ones are mostly torsion's, one for a mesh."""
 LARGEST_RESIDUAL = 1e-3
 """Largest ‖Ku − f‖/‖f‖ of a solution. SuperLU's was at most 6e-12 for 252 meridians of cups, 2.5e-6 for a
-thin ring with a condition number of 1e10, and by either solver
-0.0013 to 5 for grids of springs that were held nowhere."""
+thin ring with a condition number of 1e10, and by either solver 0.0013 to 5 for grids of springs that were
+held nowhere."""
 
 
 @dataclass(frozen=True)
