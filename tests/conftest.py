@@ -131,8 +131,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What the collector of garbage need not look at again: half a million objects, 4 % of the suite."""
+    """What the collector of garbage need not look at again: half a million objects, 4 % of the suite. What
+    tests leave it looks at every million objects in place of every 70 000: 1 % more."""
     gc.freeze()
+    gc.set_threshold(10_000, 10, 10)
 
 
 @contextmanager
