@@ -33,15 +33,16 @@ WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 SLOWEST = (
-    "test_cli", "test_specimens", "test_lobes_by_torsion", "test_studio_work", "test_swept",
-    "test_units_apart", "test_document_commands", "test_cuts_alone", "test_enclosed_part",
-    "test_scaled_bend", "test_legibility_diagnosis", "test_study_command", "test_studio_design",
-    "test_first_mesh", "test_studio_reading", "test_layered", "test_estimate_honesty", "test_streams",
-    "test_studio_widths", "test_gear_command", "test_studio_process", "test_without_opengl",
-    "test_enclosed_holes", "test_diagnose_command", "test_gear_inputs", "test_backward",
-    "test_studio_stale", "test_unfilleted_shaft", "test_every_cause", "test_wrong_model_said",
+    "test_cli", "test_specimens", "test_lobes_by_torsion", "test_superposition", "test_studio_work",
+    "test_separate_units", "test_swept", "test_document_commands", "test_cuts_alone",
+    "test_enclosed_part", "test_scaled_bend", "test_legibility_diagnosis", "test_study_command",
+    "test_studio_design", "test_first_mesh", "test_studio_reading", "test_layered",
+    "test_estimate_honesty", "test_streams", "test_studio_widths", "test_gear_command",
+    "test_studio_process", "test_without_opengl", "test_enclosed_holes", "test_diagnose_command",
+    "test_gear_inputs", "test_wrong_model_said", "test_cyclic", "test_no_network", "test_slope_hints",
+    "test_rate_independence", "test_every_cause",
 )  # fmt: skip
-"""Files that take eight seconds of a processor or more, begun first so that no worker is left alone with one
+"""Files that take seven seconds of a processor or more, begun first so that no worker is left alone with one
 at the end. The first makes the run that others read, which begin when it has ended, as waiting is a worker's
 time; the second the solves that the hidden specimens read; the third those of `test_cuts_alone`."""
 
