@@ -116,7 +116,7 @@ def _among_contacts(
         turn = (float(turning @ by) + torque + float(turning @ force)) / weight
         force, rotation = force + by - turn * aside, rotation + turn
         pulls = force <= 0
-        gaps = at.free + rotation * at.turning + at.compliance[:, i] @ force
+        gaps = at.free + rotation * at.turning + force @ at.compliance[i]
         enter = ~on & (gaps < -GEAR_RESIDUAL * size)
         if not pulls.any() and not enter.any():
             left = gaps[i] + hertz * force ** (2 / 3)

@@ -50,15 +50,14 @@ def lagged(x: np.ndarray, time: np.ndarray, lag: float) -> np.ndarray:
     """First-order lag [s] of x, straight between the times: exact for that."""
     if lag == 0:
         return x
-    out, y = np.empty_like(x), x[0]
-    out[0] = y
-    for k in range(1, len(x)):
-        h = (time[k] - time[k - 1]) / lag
-        keep = np.exp(-h)
-        mean = (1 - keep) / h
-        y = y * keep + x[k - 1] * (mean - keep) + x[k] * (1 - mean)
-        out[k] = y
-    return out
+    h = np.diff(time) / lag
+    keep = np.exp(-h)
+    mean = (1 - keep) / h
+    more = x[:-1] * (mean - keep) + x[1:] * (1 - mean)
+    out = [float(x[0])]
+    for kept, added in zip(keep.tolist(), more.tolist(), strict=True):
+        out.append(out[-1] * kept + added)
+    return np.array(out)
 
 
 def draw_wear(s: Setting, rng: np.random.Generator) -> Hidden:

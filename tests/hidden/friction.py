@@ -112,7 +112,7 @@ def slipping(q: np.ndarray, limit: np.ndarray) -> np.ndarray:
     z, out = np.zeros(len(limit)), np.empty((len(q), len(limit)))
     before = 0.0
     for k, x in enumerate(q):
-        z = np.clip(z + (x - before), -limit, limit)
+        z = np.minimum(np.maximum(z + (x - before), -limit), limit)
         before, out[k] = x, z
     return out
 

@@ -22,10 +22,22 @@ from flexspline.results.studio.worker import Fault
 END = "one of the two solutions is wrong; please report the design file"
 
 
+@pytest.fixture(scope="module")
+def caches(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One for each fault: what is solved for a command serves the next, and no other test."""
+    return tmp_path_factory.mktemp("caches")
+
+
 @pytest.fixture
-def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is solved wrong is no answer of another test."""
-    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path / "cache"))
+def bodies_swapped(caches: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(caches / "bodies"))
+    swap_bodies(monkeypatch)
+
+
+@pytest.fixture
+def solid_stiffened(caches: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(caches / "solid"))
+    stiffen_solid_model(monkeypatch)
 
 
 @pytest.fixture
@@ -39,12 +51,9 @@ def design(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.usefixtures("own_cache")
+@pytest.mark.usefixtures("solid_stiffened")
 @pytest.mark.parametrize("command", ["stiffness", "backlash"])
-def test_a_solid_model_outside_its_enclosure(
-    command: str, design: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stiffen_solid_model(monkeypatch)
+def test_a_solid_model_outside_its_enclosure(command: str, design: Path) -> None:
     out = design.parent / "out"
     done = flexspline(command, design, "--out", out, folder=out)
     assert done.word == "failed"
@@ -54,12 +63,9 @@ def test_a_solid_model_outside_its_enclosure(
     assert not done.written
 
 
-@pytest.mark.usefixtures("own_cache")
+@pytest.mark.usefixtures("bodies_swapped")
 @pytest.mark.parametrize("command", ["run", "stiffness", "backlash", "gear"])
-def test_two_bodies_of_revolution_the_wrong_way_round(
-    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    swap_bodies(monkeypatch)
+def test_two_bodies_of_revolution_the_wrong_way_round(command: str, tmp_path: Path) -> None:
     file = EXAMPLES / "xb1-40.toml"
     done = flexspline(command, file, "--out", tmp_path / "out", folder=tmp_path / "out")
     assert done.word == "failed"
@@ -68,9 +74,8 @@ def test_two_bodies_of_revolution_the_wrong_way_round(
     assert "out/result.json" not in done.written
 
 
-@pytest.mark.usefixtures("own_cache")
+@pytest.mark.usefixtures("bodies_swapped")
 def test_a_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    swap_bodies(monkeypatch)
     monkeypatch.setattr(run, "worker_pool", lambda workers, scheduler: threads())
     monkeypatch.setattr(run, "nominal_holes", lambda *_: None)
     file, out = tmp_path / "walls.toml", tmp_path / "out"
@@ -99,8 +104,7 @@ def test_the_live_page(question: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.message.endswith(END)
 
 
-@pytest.mark.usefixtures("own_cache")
-def test_python(design: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stiffen_solid_model(monkeypatch)
+@pytest.mark.usefixtures("solid_stiffened")
+def test_python(design: Path) -> None:
     with pytest.raises(FlexsplineError, match="the solid model is at least"):
         stiffness(load_design(design))

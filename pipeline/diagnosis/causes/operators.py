@@ -88,12 +88,17 @@ def _clipped_sums(first: np.ndarray, steps: np.ndarray, limit: np.ndarray) -> np
     span = 1
     while span < len(steps):
         after = shift[span:]
-        lower = np.clip(low[:-span] + after, low[span:], high[span:])
-        upper = np.clip(high[:-span] + after, low[span:], high[span:])
+        lower = _clipped(low[:-span] + after, low[span:], high[span:])
+        upper = _clipped(high[:-span] + after, low[span:], high[span:])
         low, high = np.vstack([low[:span], lower]), np.vstack([high[:span], upper])
         shift = np.vstack([shift[:span], shift[:-span] + after])
         span *= 2
-    return np.vstack([first, np.minimum(np.maximum(first + shift, low), high)])
+    return np.vstack([first, _clipped(first + shift, low, high)])
+
+
+def _clipped(values: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """numpy's `clip`, which takes four times as long for a few values."""
+    return np.minimum(np.maximum(values, low), high)
 
 
 def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:

@@ -18,6 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.crossing.step_fit import (
     LEAST_STEP,
     MOST_FIRST_ROWS,
     ROBUST_DEVIATIONS,
+    SINGULAR_SHARE,
     looped_functions,
     unlooped_functions,
     weighted_fit,
@@ -79,8 +80,16 @@ class CrossedRecord:
 
     @cached_property
     def smooth(self) -> np.ndarray:
+        """What the angle of its rows may be but the step, in as few columns as say all that the functions do.
+
+        Several are nearly one another, and normal equations of those would have to be solved by their
+        eigenvalues, for each form anew.
+        """
         functions = looped_functions if self.loops else unlooped_functions
-        return np.column_stack([functions(self.history), *self.found])[self.rows]
+        columns = np.column_stack([functions(self.history), *self.found])[self.rows]
+        apart, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+        told = sizes > SINGULAR_SHARE**0.5 * sizes.max(initial=0.0)
+        return np.asarray(apart[:, told] * np.sqrt(len(columns)))
 
     @cached_property
     def width_Nm(self) -> float:

@@ -88,6 +88,21 @@ def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
     assert list(better) == []
 
 
+def test_a_set_grown_term_by_term_has_the_evidence_of_all_at_once() -> None:
+    """Of terms of one, two and more columns."""
+    history = swept(cycles=2)
+    now = raced(history, np.random.default_rng(5).normal(0, 2, len(history)) + history.torque_Nm)
+    search = Search(now)
+    search.run(most=3)
+    assert {1, 2} < {now.terms[i].width for c in search.tried for i in c.terms}
+    for grown in search.tried[:: len(search.tried) // 300 + 1]:
+        whole = search.candidate(grown.terms)
+        assert grown.owners == whole.owners
+        # sums of three steps, each by another factorisation
+        assert grown.log_evidence == pytest.approx(whole.log_evidence, abs=1e-6)
+        assert grown.score == pytest.approx(whole.score, abs=1e-6)
+
+
 def test_tuning_finds_the_knee() -> None:
     """A knee between two of the grid's, from the nearest of them."""
     history = swept(cycles=3, rows=120)
