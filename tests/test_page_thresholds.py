@@ -49,6 +49,7 @@ from flexspline.pipeline.diagnosis.sweep.identification import (
     identification,
     plausible_sets,
     rate_independence,
+    rings_on,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.nuisance import (
@@ -104,6 +105,7 @@ STATED = [
     diagnosis("that power up to {} times the largest torque", micro_slip.THRESHOLD_RATIO),
     diagnosis("differs by up to {} of the span", thermal_clearance.SWING_SHARE),
     diagnosis("yield at {} the largest torque at most", friction_hysteresis.LARGEST_SHARP),
+    diagnosis("have more than {} % of the loop's rms", 100 * rings_on.LEAST_SHARE),
     diagnosis("Their periods range from {} rows", rig_nuisance.FEWEST_PERIOD_ROWS),
     diagnosis("within {} % of its largest value around a reversal", 100 * slow_runs.SLOW_RANGE_SHARE),
     diagnosis("Two tests must agree, each with a p-value of {}", stick_slip_rests.EITHER_P_VALUE),
