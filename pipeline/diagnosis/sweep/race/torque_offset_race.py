@@ -45,7 +45,7 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
 
     It starts from where the gap's step fits best of all places, if that is clearly not zero: what a race
     with the gap at zero leaves shows a large offset at a wrong place, its terms bent to the rows between.
-    Where that race needs terms without a name, a smaller offset is tried too, beside which none may be needed.
+    Where that race needs terms without a name, a smaller offset is tried, beside which none may be needed.
     """
     prepared, seen = plain.prepared, plain.crossing
     sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
