@@ -15,6 +15,7 @@ FormKind = Literal[
     "even_curve",
     "ripple",
     "bump",
+    "curve_step",
     "softening",
     "less_bend",
     "uneven_loop",
