@@ -39,6 +39,8 @@ FRICTION_SHARES = (0.015, 0.03, 0.06, 0.13, 0.25)
 CLEAR_GAIN = 40.0
 """Of what the best places and widths tried leave in the mean row: a bump of less has the form tried first.
 Four numbers more would fit noise by 4."""
+INSIDE = 1e-9
+"""Of the numbers tuned, by which they begin inside their limits: the solver begins at none."""
 TUNING_ROUNDS = 60
 """Most steps by which forms are tuned. Judgement: most need ten."""
 PEAKED, FLAT = 1.0, 5.0
@@ -169,7 +171,7 @@ def _tuned(x: np.ndarray, left: np.ndarray, basis: np.ndarray, bumps: Sequence[B
         heights = np.linalg.lstsq(columns, left, rcond=BASIS_RATIO)[0]
         return np.asarray(left - columns @ heights)
 
-    inside = np.clip(start, np.array(low) + 1e-9, np.array(high) - 1e-9)
+    inside = np.clip(start, np.array(low) + INSIDE, np.array(high) - INSIDE)
     found = least_squares(
         misfit, inside, bounds=(low, high), x_scale=[0.01, 0.1, 0.1, 0.2] * len(bumps),
         max_nfev=TUNING_ROUNDS,
