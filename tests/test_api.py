@@ -185,6 +185,7 @@ def test_a_model_answers_a_history_without_rows(diagnosed: Any) -> None:
     ("torque", "channels", "needle"),
     [
         ("much", {}, "torque_Nm must hold numbers"),
+        ([0.0, 1e300], {"temperature_C": [20.0, 20.0]}, r"torque_Nm = 1e\+300 is beyond"),
         ([1j, 2.0], {}, "torque_Nm must hold numbers"),
         ([[1.0, 2.0], [3.0]], {}, "torque_Nm must hold numbers"),
         (

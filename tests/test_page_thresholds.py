@@ -38,7 +38,12 @@ from flexspline.pipeline.diagnosis.specimens import decide as specimens_decide
 from flexspline.pipeline.diagnosis.specimens import diagnose as specimens_diagnose
 from flexspline.pipeline.diagnosis.specimens import evidence as specimens_evidence
 from flexspline.pipeline.diagnosis.specimens import sensitivity
-from flexspline.pipeline.diagnosis.sweep import held_out, held_out_splits, physical_limits
+from flexspline.pipeline.diagnosis.sweep import (
+    held_out,
+    held_out_splits,
+    local_bump,
+    physical_limits,
+)
 from flexspline.pipeline.diagnosis.sweep.crossing import (
     crossing_likelihood,
     gap_crossing,
@@ -49,6 +54,7 @@ from flexspline.pipeline.diagnosis.sweep.identification import (
     identification,
     plausible_sets,
     rate_independence,
+    rings_on,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.nuisance import (
@@ -104,6 +110,8 @@ STATED = [
     diagnosis("that power up to {} times the largest torque", micro_slip.THRESHOLD_RATIO),
     diagnosis("differs by up to {} of the span", thermal_clearance.SWING_SHARE),
     diagnosis("yield at {} the largest torque at most", friction_hysteresis.LARGEST_SHARP),
+    diagnosis("that explains less than {} % of that one", 100 * local_bump.PART_SHARE),
+    diagnosis("have more than {} % of the loop's rms", 100 * rings_on.LEAST_SHARE),
     diagnosis("Their periods range from {} rows", rig_nuisance.FEWEST_PERIOD_ROWS),
     diagnosis("within {} % of its largest value around a reversal", 100 * slow_runs.SLOW_RANGE_SHARE),
     diagnosis("Two tests must agree, each with a p-value of {}", stick_slip_rests.EITHER_P_VALUE),

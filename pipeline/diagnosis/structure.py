@@ -15,6 +15,7 @@ FormKind = Literal[
     "even_curve",
     "ripple",
     "bump",
+    "curve_step",
     "softening",
     "less_bend",
     "uneven_loop",
@@ -52,13 +53,14 @@ class UnnamedForm:
     Attributes
     ----------
     number : of the unit or specimen that alone has it, from 1; 0: of none. name : that unit's, where the file
-        names it. at_Nm : torque near which it is, of what is in one place.
+        names it. at_Nm : torque near which it is, of what is in one place. period_s : of ringing.
     """
 
     kind: FormKind
     number: int = 0
     name: str = ""
     at_Nm: float | None = None
+    period_s: float | None = None
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,10 @@ def predict_and_write(
     for line in (*model_warnings(file, design), *prediction_warnings(predicted)):
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
-        tell("note: no standard deviations: only a model of a torque sweep contains them")
+        tell(
+            "note: no standard deviations, and rows beyond the torques of the model's record are not "
+            "counted: only a model of a torque sweep contains both"
+        )
     angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
     added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})
     text = with_columns(torque, added, predicted.read_as.decimal_mark)

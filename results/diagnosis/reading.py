@@ -75,9 +75,10 @@ def lost_note(lost: LostReadings) -> str:
     """Rows in which nothing was recorded: how many, and where."""
     count = len(lost.lines)
     s = "s" * (count > 1)
+    where = f"line{s} {listed(lost.lines, 'lines')}"
     return (
-        f"{heads(lost.heads)} {'are' if len(lost.heads) > 1 else 'is'} empty in {count} of {lost.rows} rows "
-        f"(line{s} {listed(lost.lines, 'lines')}): left out; the other rows stay in order, at their times"
+        f"{heads(lost.heads)} {'have' if len(lost.heads) > 1 else 'has'} no reading in {count} of "
+        f"{lost.rows} rows ({where}): left out; the other rows stay in order, at their times"
     )
 
 

@@ -34,6 +34,7 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("smooth", "row"): "a smooth function along the record",
     ("even_curve", "torque_Nm"): "a curve of torque, equal for both signs",
     ("bump", "torque_Nm"): "a bump of the curve",
+    ("curve_step", "torque_Nm"): "a step of the curve",
     ("ripple", "torque_Nm"): "a ripple over torque",
     ("ripple", "angle_arcsec"): "a ripple over the output angle",
     ("softening", "torque_Nm"): "stiffness that falls with load",
@@ -153,7 +154,8 @@ def _form(form: UnnamedForm, channel: str) -> str:
         return f"a {form.kind} over {channel}"  # a dimension
     said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
     if form.at_Nm is not None:
-        return f"{said} near {signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2))} N·m"
+        place = signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2)) if form.at_Nm else "0"
+        return f"{said} near {place} N·m"
     if not form.number:
         return said
     return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")

@@ -10,6 +10,7 @@ from flexspline.geometry.listed import joined
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.failed_reading import is_failed
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.head import with_unit
 from flexspline.pipeline.diagnosis.measurement.number_text import number_of
@@ -148,7 +149,8 @@ def _times(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> list[tuple[i
 
 
 def _first(grid: CellGrid, at: int) -> str:
-    return next((row[at].strip() for row in grid.rows if row[at].strip()), "")
+    texts = (row[at].strip() for row in grid.rows)
+    return next((text for text in texts if not is_failed(text)), "")
 
 
 def _day_beside(grid: CellGrid, at: int) -> int | None:

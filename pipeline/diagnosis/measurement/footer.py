@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from enum import Enum, auto
 
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
+from flexspline.pipeline.diagnosis.measurement.failed_reading import is_failed
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
 
 _WORD = re.compile(r"[^\W\d_]{2}")
@@ -15,13 +16,6 @@ _BEGINS_WITH_NUMBER = re.compile(r"[\W_]*\d")
 """Also "12.3 Nm", "> 5" and "(2024)": the first letter or digit is a digit."""
 _PHRASE = re.compile(r"[^\W\d_]\W*\s+\W*[^\W\d_]")
 """Two words: no program writes them for one reading that failed."""
-_FAILED = {
-    "nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "err", "error", "invalid", "fail",
-    "failed", "fault", "ol", "ovl", "ovf", "ovld", "ovrflw", "overload", "overflow", "overrange",
-    "over range", "underflow", "underrange", "over", "under", "open", "fehler", "überlauf", "überlast",
-    "ungültig",
-}  # fmt: skip
-"""What instruments write for a reading that failed; it is no remark."""
 
 
 class _CellKind(Enum):
@@ -71,6 +65,6 @@ def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[
 def _kind(text: str) -> _CellKind:
     if is_stamp(text) or _BEGINS_WITH_NUMBER.match(text):
         return _CellKind.NUMBER
-    if text.lstrip("+-").lower() in _FAILED or not _LETTER.search(text):
+    if is_failed(text) or not _LETTER.search(text):
         return _CellKind.NEITHER
     return _CellKind.WORDS

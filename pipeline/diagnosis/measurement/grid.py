@@ -10,6 +10,7 @@ from pathlib import Path
 from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.failed_reading import SHEET_ERROR
 from flexspline.pipeline.diagnosis.measurement.file_text import FileText, texts_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
 from flexspline.pipeline.diagnosis.measurement.head import Head, LineSplitter, head_of, paired
@@ -81,7 +82,7 @@ def read_grid(path: Path) -> CellGrid:
 
 
 def _of_sheet(path: Path, raw: bytes) -> CellGrid:
-    found = [(n, r) for n, r in first_sheet(path, raw) if not r[0].lstrip().startswith("#")]
+    found = [(n, r) for n, r in first_sheet(path, raw) if not _is_comment(r[0].strip())]
     rows, numbers = [r for _, r in found], [n for n, _ in found]
     _refuse_size(path, rows)
 
@@ -114,7 +115,7 @@ def _lines(path: Path, found: FileText) -> _Lines:
     comments: list[tuple[int, str]] = []
     for number, row in enumerate(found.text.splitlines(), 1):
         bare = row.strip()
-        if bare.startswith("#"):
+        if _is_comment(bare):
             if not lines:
                 comments.append((number, bare.lstrip("# \t")))
         elif bare.strip(";,\t "):
@@ -129,6 +130,11 @@ def _lines(path: Path, found: FileText) -> _Lines:
             numbers.insert(0, comments[above.at][0])
             head = Head(0, above.separator, above.cells, [], above.score)
     return _Lines(found, head, lines, numbers)
+
+
+def _is_comment(text: str) -> bool:
+    """Whether a line is one; a row may begin with a reading that failed."""
+    return text.startswith("#") and SHEET_ERROR.match(text) is None
 
 
 def _refuse_size(path: Path, rows: Sequence[object]) -> None:

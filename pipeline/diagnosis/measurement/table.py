@@ -16,12 +16,11 @@ from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import CELL_CHARS, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.failed_reading import is_failed
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
 from flexspline.pipeline.diagnosis.measurement.lost_readings import (
-    MEASURED,
+    OPTIONAL,
     LostReadings,
-    is_empty,
-    too_many,
     without_lost,
 )
 from flexspline.pipeline.diagnosis.measurement.number_text import DecimalMark, numbers_of
@@ -33,8 +32,6 @@ LARGEST_NUMBER = 1e12
 """Largest number of a column in our unit. Only a slipped column or exponent is larger."""
 LIMITS = {"temperature_C": TEMPERATURE_C}
 """Limits of columns in our unit, where physics sets narrower ones."""
-OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
-"""Columns that may be empty in every row: nothing was recorded then."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +82,7 @@ def read_table(
 
     Columns whose head names no quantity are kept aside, and so is an optional one that is empty in every
     row; dotted design keys are read as numbers. `counts_per_turn` of the encoder whose column is in counts.
-    `leave_out`: a sweep's rows without torque or angle, where they are few (`lost_readings`).
+    `leave_out`: a sweep's rows that lost a reading, where they are few (`lost_readings`).
 
     Raises
     ------
@@ -169,7 +166,7 @@ def _refuse_unnamed(grid: CellGrid, across: Sequence[Sequence[str]]) -> None:
 
 
 def _holds(text: str) -> bool:
-    return not is_empty(text)
+    return not is_failed(text)
 
 
 def _is_number(column: ReadColumn) -> bool:
@@ -179,7 +176,7 @@ def _is_number(column: ReadColumn) -> bool:
 def _labels(grid: CellGrid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
     empty = next((i for i, t in enumerate(texts) if not t), None)
     if empty is not None:
-        raise MeasurementError(grid.path, grid.line[empty], f"{column.head} is empty")
+        raise MeasurementError(grid.path, grid.line[empty], f"{column.head} is empty: fill it")
     return tuple(texts)
 
 
@@ -190,10 +187,11 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: DecimalM
         text = texts[bad]
         what = "is empty" if not text else f'= "{text[:CELL_CHARS]}" is not a finite number'
         many = sum(not _holds(t) for t in texts)
-        if not _holds(text) and many > 1:
-            way = "take the column out" if column.name in OPTIONAL else "leave these rows out"
-            more = too_many(many, len(texts)) if column.name in MEASURED else ""
-            what += f" (so are {many} of {len(texts)} rows; fill them, or {way}{more})"
+        if not _holds(text):
+            rows, them = ("these rows", "them") if many > 1 else ("the row", "it")
+            way = "take the column" if column.name in OPTIONAL else f"leave {rows}"
+            so = f"so are {many} of {len(texts)} rows; " if many > 1 else ""
+            what += f" ({so}fill {them}, or {way} out)"
         raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
     _refuse_outside(grid, column, values)
     largest = np.abs(values).max()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.geometry.ranges import TORQUE_Nm
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
@@ -14,6 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.errors import ChannelError
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
 
+BEYOND_GEARS = f"is beyond ±{TORQUE_Nm.high:g} N·m, which no gear carries"
 Channel = Sequence[float] | np.ndarray
 """One value for each row of a history."""
 
@@ -52,9 +54,11 @@ class ExtendedModel:
         Raises
         ------
         ChannelError : a channel that a cause of the model needs is missing, holds no finite numbers, or
-            is not as long as the torque; or time runs backwards.
+            is not as long as the torque; time runs backwards; or a torque that no gear carries.
         """
         torque = _channel("torque_Nm", torque_Nm, torque_Nm)
+        if (no_gear_s := first_beyond(torque)) is not None:
+            raise ChannelError("torque_Nm", f"= {torque[no_gear_s]:g} {BEYOND_GEARS}")
 
         def maybe(name: str, values: Channel | None) -> np.ndarray | None:
             return None if values is None else _channel(name, values, torque)
@@ -111,6 +115,12 @@ class ExtendedModel:
         for cause_id, elements in self.elements.items():
             history = known_causes()[cause_id].at_teeth(elements, history)
         return history
+
+
+def first_beyond(torque_Nm: np.ndarray) -> int | None:
+    """The first torque (n,) that no gear carries, None where all may be."""
+    beyond = np.flatnonzero(np.abs(torque_Nm) > TORQUE_Nm.high)
+    return int(beyond[0]) if len(beyond) else None
 
 
 def _channel(

@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHisto
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.model.doubt import deviation_of
+from flexspline.pipeline.diagnosis.model.extended_model import BEYOND_GEARS, first_beyond
 from flexspline.pipeline.diagnosis.model.extrapolation import RowsBeyond, extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
@@ -52,11 +53,15 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
 
     Raises
     ------
-    MeasurementError : the file cannot be read, or lacks a channel that a cause of the model needs.
+    MeasurementError : the file cannot be read, lacks a channel that a cause of the model needs, or
+        has a torque that no gear carries.
     """
     table = read_table(csv, counts_per_turn)
     if not table.has("torque_Nm"):
         raise table.refuse(None, "column torque_Nm is missing")
+    torque = table.numbers["torque_Nm"]
+    if (row := first_beyond(torque)) is not None:
+        raise table.refuse(row, f"torque_Nm = {torque[row]:g} {BEYOND_GEARS}")
     found = history_of(table)
     history = _as_recorded(found, file, table)
     if not file.provenance.time_recorded:  # there rows stood for seconds

@@ -91,13 +91,16 @@ class Search:
         return self.top
 
     def exchanged(self) -> Candidate:
-        """The best set found when each owner of the best one may give way to others.
+        """The best set found when each owner of the best one, or each term without a name, may give way.
 
         A set grown term by term may hold a first guess that a later term makes needless.
         """
         while True:
             best = self.top
             starts = [[i for i in best.terms if self._owner[i] != o] for o in sorted(best.owners)]
+            unnamed = [i for i in best.terms if self.evidence.terms[i].cause is None]
+            if len(unnamed) > 1:
+                starts += [[i for i in best.terms if i != less] for less in unnamed]
             if not starts or self.run(starts).score < best.score + WORTH_NATS:
                 return self.top
 

@@ -25,6 +25,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.regressors import (
     design_matrix,
 )
 from flexspline.pipeline.diagnosis.sweep.local_bump import local_bumps
+from flexspline.pipeline.diagnosis.sweep.local_step import curve_steps
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
 from flexspline.pipeline.diagnosis.sweep.zero_jump import sudden_step
 
@@ -121,7 +122,7 @@ def prepare(
             _knowable(sweep),
             carried,
             sudden_step(history, target, kept),
-            local_bumps(history, target, kept),
+            (*local_bumps(history, target, kept), *curve_steps(history, target, kept)),
         ),
         target,
         kept,

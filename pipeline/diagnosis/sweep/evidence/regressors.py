@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContex
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
+from flexspline.pipeline.diagnosis.sweep.local_step import CurveStep
 from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -140,12 +141,12 @@ def design_matrix(
     known: dict[str, Cause],
     ahead: FrictionAhead | None = None,
     step: int | None = None,
-    bumps: Sequence[Bump] = (),
+    bumps: Sequence[Bump | CurveStep] = (),
 ) -> DesignMatrix:
     """Evaluate every shape of every cause, and every nuisance term, on a rig's record.
 
     `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`). `bumps` : the
-    likeliest of the curve over the torque (`../local_bump.py`).
+    likeliest of the curve over the torque, and its steps (`../local_bump.py`, `../local_step.py`).
     """
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []

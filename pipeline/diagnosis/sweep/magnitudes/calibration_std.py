@@ -8,16 +8,19 @@ from math import hypot, sqrt
 import numpy as np
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
-from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
-from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR, Regressor
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
     terms_cancel,
     without_unnamed,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
-from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_changes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
+
+NEIGHBOUR_SHARE = 0.5
+"""Of the way to a neighbouring law: the nearest one is found."""
 
 
 def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibration:
@@ -56,7 +59,8 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     fits, weight = fits_alike(explained.identified)
     others = [_calibrated(other, unit) for other in fits]
     away = weight @ np.abs([o.gap_arcsec.value - found.gap_arcsec.value for o in others])
-    of_gap = hypot(found.gap_arcsec.std, gap, away)
+    soft_slope, soft_gap = _softening_std(fit, unit)
+    of_gap = hypot(found.gap_arcsec.std, gap, away, soft_gap)
     found = replace(found, gap_arcsec=Estimate(found.gap_arcsec.value, of_gap))
     if (own := found.compliance) is None:
         return found
@@ -64,8 +68,36 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     away = weight @ np.abs(np.array(values) - own.value)
     prediction = fit.rig.prediction
     most = max(own.std, prediction.compliance_std, abs(own.value - prediction.compliance))
-    std = min(hypot(own.std, slope, away, _untold_std(fit, own.value)), most)
+    std = min(hypot(own.std, slope, away, soft_slope, _untold_std(fit, own.value)), most)
     return replace(found, compliance=Estimate(own.value, std))
+
+
+def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
+    """Deviations of compliance and gap by the law of a stiffness that falls with load, which has no name.
+
+    Between the law found and its neighbours, of another power or load, lie those that were not tried.
+    """
+    terms, chosen = fit.evidence.terms, fit.posterior.terms
+    found = _calibrated(fit, unit)
+    off = [(0.0, 0.0)]
+    for i in chosen:
+        if not _softens(terms[i]):
+            continue
+        for j in (i - 1, i + 1):
+            if j not in range(len(terms)) or j in chosen or not _softens(terms[j]):
+                continue
+            other = fit_regressors(fit.evidence, [j if k == i else k for k in chosen])
+            next_one = _calibrated(other, unit)
+            slope = 0.0
+            if found.compliance is not None and next_one.compliance is not None:
+                slope = next_one.compliance.value - found.compliance.value
+            off.append((slope, next_one.gap_arcsec.value - found.gap_arcsec.value))
+    slope, gap = (NEIGHBOUR_SHARE * np.abs(off).max(axis=0)).tolist()
+    return slope, gap
+
+
+def _softens(term: Regressor) -> bool:
+    return term.form is not None and term.form.kind == "softening"
 
 
 def _calibrated(fit: SweepFit, unit: int | None) -> Calibration:
@@ -89,10 +121,12 @@ def _untold_std(fit: SweepFit, compliance: float) -> float:
 
     Of a compliance that lies beyond that doubt it is too small; it is then taken as large as the distance.
     """
-    prediction, total = fit.rig.prediction, 0.0
-    for changes in spring_changes(fit):
-        off = np.array([0.0, *changes]) + compliance - prediction.compliance
-        off /= max(prediction.compliance_std, abs(off[0]), LEAST_PRIOR)
-        likely = np.exp((off[0] ** 2 - off[1:] ** 2) / 2).clip(max=1.0)
-        total += float(likely @ np.square(changes)) / (1 + float(likely.sum()))
-    return sqrt(total)
+    prediction = fit.rig.prediction
+    found = compliance - prediction.compliance
+    doubt = max(prediction.compliance_std, abs(found), LEAST_PRIOR)
+
+    def likely(changes: np.ndarray) -> np.ndarray:
+        off = (changes + found) / doubt
+        return np.asarray(np.exp(((found / doubt) ** 2 - off**2) / 2).clip(max=1.0))
+
+    return spring_std(fit, likely)

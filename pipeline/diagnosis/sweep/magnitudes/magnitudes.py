@@ -22,7 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
 )
-from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_changes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
 
 SHAPE_NATS = 3.0
@@ -57,7 +57,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if THERMAL in std:
         std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
-        std[SERIES] = hypot(std[SERIES], _spring_std(identified))
+        of_laws = 100 * spring_std(identified.fit) / identified.fit.rig.prediction.compliance
+        std[SERIES] = hypot(std[SERIES], of_laws)
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
@@ -83,17 +84,6 @@ def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
     alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
     fits = [fit_regressors(evidence, c.terms) for c in alike]
     return fits, weights([c.score / nats for c in alike])
-
-
-def _spring_std(identified: Identification) -> float:
-    """Of a spring's size [%], by laws of other causes that fit as well and leave it another one.
-
-    They count alike: what the prior says of larger springs is no evidence of the smaller.
-    """
-    fit = identified.fit
-    changes = np.concatenate([np.empty(0), *spring_changes(fit)])
-    off = 100 * changes / fit.rig.prediction.compliance
-    return float(np.sqrt((off**2).sum() / (1 + len(off))))
 
 
 def _width_std_arcsec(evidence: GaussianEvidence) -> float:

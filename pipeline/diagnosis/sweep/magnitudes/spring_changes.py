@@ -6,6 +6,9 @@ or at which load a soft wind-up is as stiff as simulated. Each is the same but f
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import sqrt
+
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
@@ -31,6 +34,19 @@ def spring_changes(fit: SweepFit) -> list[np.ndarray]:
         changes = [float(torque @ own) / float(torque @ torque) for own in left]
         found.setdefault(term.owner, []).append(np.array(changes))
     return [_with_all(each) for each in found.values()]
+
+
+def spring_std(fit: SweepFit, weigh: Callable[[np.ndarray], np.ndarray] = np.ones_like) -> float:
+    """Deviation of the compliance [arcsec per N·m] by such laws, those of one cause apart from another's.
+
+    `weigh` : how likely changes (k,) are, beside none. Alike where what the prior says of larger springs is
+    no evidence of the smaller.
+    """
+    total = 0.0
+    for changes in spring_changes(fit):
+        likely = weigh(changes)
+        total += float(likely @ np.square(changes)) / (1 + float(likely.sum()))
+    return sqrt(total)
 
 
 def _with_all(each: list[np.ndarray]) -> np.ndarray:

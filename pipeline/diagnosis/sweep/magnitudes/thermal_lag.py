@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import COLDER, STAGES, THERMAL, WARMER
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.magnitudes.between_sets_std import std_over
 
 
 @dataclass(frozen=True)
@@ -49,9 +51,13 @@ def thermal_lag(identified: Identification) -> ThermalLag | None:
 def lag_std(identified: Identification, magnitude: float) -> float:
     """Standard deviation of a thermal gap's size, by the sizes that other lags, and no lag, give it.
 
-    Each counts by its score, over all that were tried of one element, the rest of the best set as it is.
+    Root mean square difference from the best set's. Each counts by its score, over all that were tried of one
+    element, the rest of the best set as it is.
     """
-    return std_over(identified, _other_sets(identified), THERMAL, magnitude)
+    evidence, others = identified.search.evidence, list(_other_sets(identified))
+    weight = np.exp([min(c.score - identified.best.score, 0.0) for c in others])
+    size = np.array([fit_regressors(evidence, c.terms).magnitudes()[THERMAL] for c in others])
+    return float(np.sqrt(weight @ (size - magnitude) ** 2 / (1 + weight.sum())))
 
 
 def _other_sets(identified: Identification) -> Iterator[Candidate]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import FitContext
 from flexspline.pipeline.diagnosis.causes.operators import steadied, stops
+from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
@@ -37,8 +38,10 @@ LEAST_BENT = 0.02
 TURNS_DEGREE = 2
 """Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
 encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
-FRICTION_THRESHOLDS = (0.02, 0.06, 0.15)
-"""Shares of the largest torque at which friction that changes slips, within those of named friction."""
+FRICTION_THRESHOLDS = (0.01, 0.015, 0.02, 0.03, 0.045, 0.06, 0.08, 0.1, 0.13, 0.17, 0.25, 0.4)
+"""Shares of the largest torque at which friction that changes slips. No tuning moves them as those of named
+friction: by 0.02, 0.06 and 0.15 alone a single slider at 0.08 was missed by a twentieth of its loop, which
+passed for ringing, a lock or a rate dependence."""
 CHANGING_DEGREE = 3
 """Of the polynomial by which it changes: a loop that halves with every 17 K is within 1 % of it over 55 K."""
 DEGREES = (1, 2, 3)
@@ -160,15 +163,22 @@ def changing_friction(rig: FitContext) -> Made:
         warm = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
     for state in states.T:
         if rig.cycles > 2:
-            number = 2 * history.cycle / (rig.cycles - 1) - 1
             own = levels(history.cycle.astype(float))
-            for changes in (smooth(number, CHANGING_DEGREE), own):
-                columns = np.column_stack([np.ones(len(number)), changes]) * state[:, None]
+            for changes in (smooth(_progress(history), CHANGING_DEGREE), own):
+                columns = np.column_stack([np.ones(len(state)), changes]) * state[:, None]
                 yield "cycle", UnnamedForm("changing_loop"), columns
         if warm is not None:
             changes = smooth(warm, CHANGING_DEGREE)
             columns = np.column_stack([np.ones(len(warm)), changes]) * state[:, None]
             yield "temperature_C", UnnamedForm("changing_loop"), columns
+
+
+def _progress(history: History) -> np.ndarray:
+    """(n,) cycles that have passed in each unit, its parts of a cycle too, from −1 to 1."""
+    passed = np.zeros(len(history))
+    for rows in history.cycle_slices:
+        passed[rows] = history.cycle[rows] + np.arange(len(rows)) / len(rows)
+    return np.asarray(2 * passed / (history.cycle.max() + 1) - 1)
 
 
 def zeros_apart(rig: FitContext) -> Made:

@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
+from flexspline.pipeline.diagnosis.sweep.local_step import CurveStep
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
     changing_friction,
     changing_gain,
@@ -44,6 +45,7 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.torque_nuisance import (
     over_direction,
     over_torque,
     softening,
+    step_of,
 )
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 
@@ -90,17 +92,21 @@ class _NuisanceKind:
 
 
 def nuisance_terms(
-    rig: FitContext, step: int | None = None, bumps: Sequence[Bump] = ()
+    rig: FitContext, step: int | None = None, bumps: Sequence[Bump | CurveStep] = ()
 ) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
-    `step` : the row from which a jump of the zero is likeliest. `bumps` : those of the curve. Columns have
-    unit rms in the rows that count.
+    `step` : the row from which a jump of the zero is likeliest. `bumps` : those of the curve, and its steps.
+    Columns have unit rms in the rows that count.
     """
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
     if step is not None:
         kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
-    kinds = (*kinds, *(_NuisanceKind(partial(bump_of, bump=bump)) for bump in bumps))
+    for bump in bumps:
+        make = (
+            partial(bump_of, bump=bump) if isinstance(bump, Bump) else partial(step_of, step=bump)
+        )
+        kinds = (*kinds, _NuisanceKind(make))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()

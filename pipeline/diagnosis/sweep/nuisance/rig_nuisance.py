@@ -139,8 +139,9 @@ def ringing(rig: FitContext) -> Made:
         count = int(np.log(longest / shortest) / np.log(ratio)) + 1
         omega = 2 * np.pi / (shortest * ratio ** np.arange(count))
         pole = omega * (-damping + 1j * np.sqrt(1 - damping**2))
-        for own in _rung(history, corners, pole).T:
-            yield "torque_rate", UnnamedForm("rings"), np.column_stack([own.real, own.imag])
+        for own, wave_s in zip(_rung(history, corners, pole).T, 2 * np.pi / omega, strict=True):
+            form = UnnamedForm("rings", period_s=float(wave_s))
+            yield "torque_rate", form, np.column_stack([own.real, own.imag])
 
 
 def _rung(history: History, corners: Sequence[TorqueCorner], pole: np.ndarray) -> np.ndarray:

@@ -19,14 +19,18 @@ from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
+from flexspline.pipeline.diagnosis.sweep.local_step import CurveStep
 from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import smooth, wave
 
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 """Thresholds over the largest torque. They lie within those of `friction_hysteresis`, which they reverse."""
 LEADING_LAGS = (0.05, 0.15, 0.4)
 """Time constants over a ramp. They lie within those of `rate_dependence`, which they reverse."""
-SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
+SOFTENING = (1.2, 1.35, 1.5, 1.7, 1.9, 2.15, 2.4, 2.7, 3.0, 3.5, 4.0)
 """Powers of torque, all above 1: twist grows faster than torque."""
+OPENS = tuple(np.arange(6, 19) / 20)
+"""Shares of the largest torque beyond which a joint is softer, every 0.05: without them it was taken for
+ripples and powers that cancel each other."""
 RIPPLES = range(3, 33)
 """Half periods over the range of torque or angle, by judgement: fewer are what smooth functions have. Half or
 twice as many change no verdict of 12 made-up records (`tests/hidden`, seed 77, every third of 34; nothing
@@ -55,12 +59,20 @@ def bump_of(rig: FitContext, bump: Bump) -> Made:
     yield "torque_Nm", form, bump.of(_steady(rig) * rig.largest_Nm)[:, None]
 
 
+def step_of(rig: FitContext, step: CurveStep) -> Made:
+    """A step of the curve at one torque, as a key or a joint that slips to its stop leaves."""
+    form = UnnamedForm("curve_step", at_Nm=step.place_Nm)
+    yield "torque_Nm", form, step.of(_steady(rig) * rig.largest_Nm)[:, None]
+
+
 def softening(rig: FitContext) -> Made:
-    """Stiffness that falls with load: no known cause, and anchored where the load is small."""
-    torque = _steady(rig)
-    for power in SOFTENING:
-        soft = np.abs(torque) ** power * rig.history.sign
-        yield "torque_Nm", UnnamedForm("softening"), soft[:, None]
+    """Stiffness that falls with load: no known cause, and anchored where the load is small.
+
+    By a power of torque, or at once beyond one load, as of a joint that opens.
+    """
+    torque = np.abs(_steady(rig))
+    for soft in (*(torque**p for p in SOFTENING), *(np.maximum(torque - s, 0.0) for s in OPENS)):
+        yield "torque_Nm", UnnamedForm("softening"), (soft * rig.history.sign)[:, None]
 
 
 def over_angle(rig: FitContext) -> Made:

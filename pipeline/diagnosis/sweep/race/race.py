@@ -40,6 +40,7 @@ from flexspline.pipeline.diagnosis.sweep.identification.identification import (
     identify,
 )
 from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import follows_rate
+from flexspline.pipeline.diagnosis.sweep.identification.rings_on import is_ringing, rings_on
 from flexspline.pipeline.diagnosis.sweep.identification.unit_amplitudes import (
     UnitAmplitudes,
     unit_amplitudes,
@@ -112,7 +113,8 @@ class ExplainedSweep:
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     """Race, with the noise estimated again from what the best set leaves, and shapes tuned.
 
-    Once more without rate dependence, where beside friction it follows no rate.
+    Once more without rate dependence, where beside friction it follows no rate; and without ringing, where
+    it is a loop's misfit.
     """
     begun = prepared
     before: tuple[PreparedSweep, Search] | None = None
@@ -141,6 +143,9 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
         # nor creep in its place, where there was none beside it
         in_vain = {RATE, CREEP} - (identified.best.named(search.evidence) - {RATE})
         return run_race(replace(begun, columns=begun.columns.less(in_vain)))
+    if not rings_on(search.evidence, identified.best):
+        without = begun.columns.only(lambda term: not is_ringing(term))
+        return run_race(replace(begun, columns=without))
     seen = crossing_of(prepared, identified.fit, np.flatnonzero(~prepared.outlier))
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
 

@@ -45,6 +45,7 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
 
     It starts from where the gap's step fits best of all places, if that is clearly not zero: what a race
     with the gap at zero leaves shows a large offset at a wrong place, its terms bent to the rows between.
+    Where that race needs terms without a name, a smaller offset is tried, beside which none may be needed.
     """
     prepared, seen = plain.prepared, plain.crossing
     sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
@@ -57,7 +58,19 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
             return first if wrong_side_rows(first) < wrong_side_rows(last) else last
     if seen is not None and is_shifted(seen, prepared):
         return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
+    if seen is not None and plain.identified.unnamed(()) and _may_be_shifted(seen, prepared):
+        # they may hide a part of the offset
+        shifted = (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
+        if shifted.offset_nats > OFFSET_SURE and not shifted.identified.unnamed(()):
+            return shifted
     return plain
+
+
+def _may_be_shifted(seen: Crossing, prepared: PreparedSweep) -> bool:
+    """Whether the offset of a crossing is worth a race with it."""
+    return (
+        seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > OFFSET_LEAST[1] * prepared.rig.largest_Nm
+    )
 
 
 def is_shifted(seen: Crossing, prepared: PreparedSweep) -> bool:

@@ -50,8 +50,8 @@ def unexplained_of(
     for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
         rms = identified.rms[owner]
         if owner.startswith("?"):
-            forms = dict.fromkeys(r.form for r in regressors if r.owner == owner and r.form)
-            named = tuple(_with_name(form, units) for form in forms)
+            forms = (r.form for r in regressors if r.owner == owner and r.form)
+            named = tuple(dict.fromkeys(_as_said(form, units) for form in forms))
             found.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
         else:
             found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
@@ -66,6 +66,7 @@ def unexplained_of(
     return tuple(found)
 
 
-def _with_name(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:
-    """A form that one unit alone has, with that unit's name."""
+def _as_said(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:
+    """A form that one unit alone has, with that unit's name; ringing of two periods is one."""
+    form = replace(form, period_s=None)
     return replace(form, name=units[form.number - 1]) if form.number and units else form

@@ -266,7 +266,7 @@ REFUSED = {
     "a strange stamp":
         ("Zeit;torque_Nm;angle_arcsec\n" + "12:00:01;1;2\n" * 9 + "noon;1;2\n", ':11: Zeit = "noon"'),
     "gaps":
-        ("torque_Nm,angle_arcsec,temperature_C\n" + "1,2,20\n1,2,\n" * 9, "is empty (so are 9 of 18"),
+        ("torque_Nm,angle_arcsec,temperature_C\n" + "1,2,20\n1,2,\n" * 9, "9 of 18 rows lack a reading"),
     "unquoted decimal commas":
         ("torque_Nm,angle_arcsec\n" + "0,5,1,5\n" * 9, "with decimal commas, separate"),
     "decimal commas in one column":

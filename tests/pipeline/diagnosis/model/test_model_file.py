@@ -173,6 +173,16 @@ def test_a_missing_channel_is_named(tmp_path: Path) -> None:
         predict_file(file, csv)
 
 
+def test_a_torque_that_no_gear_carries_is_refused(tmp_path: Path) -> None:
+    """Also by a model that does not say over which torques it was measured."""
+    file = read_model_file(written(tmp_path, LONELY))
+    csv = tmp_path / "t.csv"
+    csv.write_text("torque_Nm\n1\n2e9\n")
+    with pytest.raises(MeasurementError, match=r"torque_Nm = 2e\+09 is beyond") as no:
+        predict_file(file, csv)
+    assert no.value.line == 3
+
+
 def test_cycles_go_on_from_the_record_s_first(tmp_path: Path) -> None:
     """Wear of 6 arcsec from cycle 3 to 5 of the file: half of it on either side of the gap."""
     shape = shape_of("wear", sweep(cycles=3), exponent=1.0, run_in_cycles=0.0, steady=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from read_sweep import as_read, history_of, simulated, steps
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, run_race
@@ -26,17 +28,30 @@ def softening(history: History, opens: float) -> np.ndarray:
     return 0.3 * COMPLIANCE * LARGEST_Nm * np.sign(share) * np.maximum(np.abs(share) - opens, 0)
 
 
-def explained(extra: Callable[[History], np.ndarray]) -> ExplainedSweep:
-    """A straight line and the gap as simulated, and an effect that has no name."""
+def explained(extra: Callable[[History], np.ndarray], local: bool = True) -> ExplainedSweep:
+    """A straight line and the gap as simulated, and an effect that has no name.
+
+    By a race without the terms that begin at one torque, or stay near it, if not `local`.
+    """
     history = history_of(steps(LARGEST_Nm, 55), 5)
     noise = np.random.default_rng(4).normal(0, NOISE_ARCSEC, len(history))
     sweep = as_read(history, simulated(history) + extra(history) + noise)
-    return run_race(prepare(sweep, PREDICTION))
+    prepared = prepare(sweep, PREDICTION)
+    if local:
+        return run_race(prepared)
+    columns = prepared.columns
+
+    def is_wide(term: Regressor) -> bool:
+        if term.form is None or term.form.kind not in ("softening", "bump", "curve_step"):
+            return True
+        return term.form.kind == "softening" and bool(np.mean(columns.all[:, term.at] == 0) < 0.1)
+
+    return run_race(replace(prepared, columns=columns.only(is_wide)))
 
 
 @pytest.mark.parametrize("opens", [0.6, 0.7])
 def test_what_cancels_does_not_fix_compliance_and_gap(opens: float) -> None:
-    found = explained(lambda h: softening(h, opens))
+    found = explained(lambda h: softening(h, opens), local=False)
     assert terms_cancel(found.identified)
     calibration = calibration_of(found)
     assert calibration.compliance is not None
@@ -45,6 +60,35 @@ def test_what_cancels_does_not_fix_compliance_and_gap(opens: float) -> None:
     assert abs(calibration.compliance.value - COMPLIANCE) < 2 * calibration.compliance.std
     assert abs(calibration.gap_arcsec.value - GAP) < 2 * calibration.gap_arcsec.std
     assert calibration.far_off(PREDICTION) == ()
+
+
+@pytest.mark.parametrize("opens", [0.47, 0.7])
+def test_a_joint_that_opens_is_one_term(opens: float) -> None:
+    """At a load between two that are tried, too."""
+    found = explained(lambda h: softening(h, opens))
+    evidence = found.identified.search.evidence
+    terms = [evidence.terms[i].form for i in found.identified.best.terms]
+    assert {form.kind for form in terms if form} == {"softening"}
+    assert not terms_cancel(found.identified)
+    calibration = calibration_of(found)
+    assert calibration.compliance is not None
+    assert abs(calibration.compliance.value - COMPLIANCE) < 0.1
+    assert abs(calibration.gap_arcsec.value - GAP) < 0.5
+
+
+@pytest.mark.parametrize("power", [1.25, 1.6, 2.25])
+def test_a_law_between_those_tried_leaves_the_compliance_open(power: float) -> None:
+    """A spring whose twist grows as a power of torque, beside the linear one."""
+    largest = 0.3 * COMPLIANCE * LARGEST_Nm
+
+    def soft(history: History) -> np.ndarray:
+        share = history.torque_Nm / LARGEST_Nm
+        return largest * np.sign(share) * np.abs(share) ** power
+
+    calibration = calibration_of(explained(soft))
+    assert calibration.compliance is not None
+    assert abs(calibration.compliance.value - COMPLIANCE) < 2 * calibration.compliance.std
+    assert abs(calibration.gap_arcsec.value - GAP) < 2 * calibration.gap_arcsec.std
 
 
 def test_terms_that_are_right_do_not_cancel() -> None:

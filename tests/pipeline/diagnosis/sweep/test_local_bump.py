@@ -23,16 +23,19 @@ LARGEST_Nm, NOISE_arcsec = 5.0, 0.3
 ROWS, CYCLES = 220, 5
 
 
-def diagnosed(path: Path, bumps: np.ndarray, seed: int) -> Diagnosis:
-    """Of a straight line with the simulated gap and these bumps (k, 3): place, half width, height."""
+def diagnosed(path: Path, bumps: np.ndarray, seed: int, pointed: bool = False) -> Diagnosis:
+    """Of a straight line with the simulated gap and these bumps (k, 3): place, half width, height.
+
+    Raised cosines, or triangles: neither is a Gaussian.
+    """
     rng = np.random.default_rng(seed)
     share = np.interp(np.arange(ROWS) / ROWS, [0, 0.25, 0.75, 1], [0, 1, -1, 0])
     torque = LARGEST_Nm * np.tile(share, CYCLES)
     gap = simulated_gap()
     angle = COMPLIANCE * torque + gap / 2 * np.sign(torque)
-    for place, half, height in bumps:  # a raised cosine, which is no Gaussian
-        near = np.clip((torque - place) / half, -1, 1)
-        angle += height * (1 + np.cos(np.pi * near)) / 2
+    for place, half, height in bumps:
+        near = np.clip(np.abs(torque - place) / half, 0, 1)
+        angle += height * (1 - near if pointed else (1 + np.cos(np.pi * near)) / 2)
     angle += rng.normal(0, NOISE_arcsec, len(torque))
     read = torque + rng.normal(0, 0.003, len(torque))
     rows = enumerate(zip(read, angle, strict=True))
@@ -76,6 +79,38 @@ def test_a_bump_is_told_where_it_is(
     # the noise leaves ± 0.1 arcsec of the gap; a bump of another form than Gaussian some more
     assert calibration.gap_arcsec.value == pytest.approx(simulated_gap(), abs=0.5)
     assert calibration.compliance.value == pytest.approx(COMPLIANCE, rel=0.005)
+
+
+@pytest.mark.parametrize(
+    ("bumps", "pointed"),
+    [
+        ([(1.5, 0.8, 12.0)], False),
+        ([(-2.3, 0.5, 12.0)], True),
+        ([(-3.5, 1.0, 25.0)], False),
+        ([(0.0, 0.5, 8.0)], False),
+        ([(0.0, 0.5, 8.0)], True),
+        ([(3.0, 0.5, 8.0), (2.0, 0.6, 8.0)], False),
+        ([(-2.0, 0.6, 12.0), (-1.5, 0.5, -6.0)], False),
+    ],
+)
+def test_a_large_bump_leaves_nothing_else_to_say(
+    bumps: list[tuple[float, float, float]], pointed: bool, tmp_path: Path
+) -> None:
+    """Nor does one beside the gap, and one on another's flank is told beside it."""
+    diagnosis = diagnosed(tmp_path / "record.csv", np.array(bumps), 9, pointed)
+    (only, *more) = diagnosis.outcome.unexplained
+    assert not more
+    assert not diagnosis.causes
+    assert isinstance(only.structure, tuple)
+    places = [form.at_Nm for form in only.structure if form.at_Nm is not None]
+    assert len(places) == len(bumps)
+    for place, _, _ in bumps:
+        assert min(abs(p - place) for p in places) < 0.03 * LARGEST_Nm
+    calibration = diagnosis.calibration
+    assert calibration is not None
+    assert calibration.compliance is not None
+    assert calibration.gap_arcsec.value == pytest.approx(simulated_gap(), abs=0.3)
+    assert calibration.compliance.value == pytest.approx(COMPLIANCE, rel=0.003)
 
 
 def test_a_straight_line_has_no_bump(tmp_path: Path) -> None:

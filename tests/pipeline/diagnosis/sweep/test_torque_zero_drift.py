@@ -19,7 +19,7 @@ GEAR = replace(sweep(cycles=5, rows=240, hold=0), temperature_C=None, input_angl
 MOVED_Nm = 0.04 * LARGEST
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seed", [1, 3, pytest.param(2, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("of_torque", "rivals"), [(True, ("torque_offset",)), (False, ())])
 def test_where_the_gap_is_crossed_tells_whose_zero_moves(
     of_torque: bool, rivals: tuple[str, ...], seed: int
