@@ -49,5 +49,14 @@ def module_hint(design: Design) -> str:
     )
 
 
+def with_fitting_module(design: Design) -> Design:
+    """The design with `fitting_module_mm`, where its own is far from that: what a wrong module says of other
+    values is no use."""
+    if not module_hint(design):
+        return design
+    gear = design.gear.model_copy(update={"module_mm": fitting_module_mm(design)})
+    return design.model_copy(update={"gear": gear})
+
+
 def _fits(root_mm: float, ring_mm: float) -> bool:
     return 1 / WRONG_MODULE_RATIO <= root_mm / ring_mm <= WRONG_MODULE_RATIO

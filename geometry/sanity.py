@@ -12,7 +12,7 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import UM_PER_MM
-from flexspline.geometry.module_fit import module_hint, root_radius_mm
+from flexspline.geometry.module_fit import module_hint, root_radius_mm, with_fitting_module
 from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
@@ -50,7 +50,9 @@ def warnings(design: Design) -> tuple[str, ...]:
         _ratio,
         rated_warnings,
     )
-    return tuple(line for rule in rules for line in rule(design))
+    by_module = (_play_edge, _clearance, rated_warnings)
+    judged = with_fitting_module(design)
+    return tuple(line for rule in rules for line in rule(judged if rule in by_module else design))
 
 
 def ring_bending_stress_MPa(design: Design) -> float:

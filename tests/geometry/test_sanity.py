@@ -107,7 +107,23 @@ def test_a_diameter_in_metres_is_refused() -> None:
         hat.changed({f"flexspline.{key}": value for key, value in {**flange, **tube}.items()})
 
 
-def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:
+@pytest.mark.parametrize("clearance_um", [12.0, 60.0])
+def test_a_play_refused_for_a_slipped_module_is_the_modules_fault(clearance_um: float) -> None:
+    """At its 0.02 mm the play ends at 2.4 µm; by the 0.2 mm of the ring it is wrong beyond 24 µm."""
     cup = load_design(EXAMPLES / "xb1-40.toml")
-    with pytest.raises(DesignError, match=r"radial_clearance_um.*gear\.module_mm = 0\.02 does not"):
-        cup.changed({"gear.module_mm": 0.02})
+    with pytest.raises(DesignError) as refused:
+        cup.changed({"gear.module_mm": 0.02, "bearing.radial_clearance_um": clearance_um})
+    assert refused.value.key == "gear.module_mm"
+    assert f"no gear of that size has bearing.radial_clearance_um = {clearance_um:g}" in str(
+        refused.value
+    )
+    others = [fault.key for fault in refused.value.others]
+    assert others == (["bearing.radial_clearance_um"] if clearance_um > 24.2 else [])
+
+
+def test_a_slipped_module_warns_of_itself_alone() -> None:
+    """Rated torque, play and clearance would be usual with the ring's module of 0.2 mm."""
+    cup = load_design(EXAMPLES / "xb1-40.toml").changed({"gear.rated_torque_Nm": 23.0})
+    assert not warnings(cup)
+    (line,) = warnings(cup.changed({"gear.module_mm": 0.1, "gear.flank_clearance_um": 20.0}))
+    assert "gear.module_mm = 0.1 does not belong to this ring" in line
