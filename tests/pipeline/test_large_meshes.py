@@ -1,0 +1,36 @@
+"""Large solid meshes: what is said of them, and what is advised instead."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from example_files import EXAMPLES
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import part_stiffness, solid_torsion
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.progress import Progress
+
+DESIGN = load_design(EXAMPLES / "xb1-40.toml").changed({"solver.tolerance_pct": 5.0})
+STATED = DESIGN.changed({"solver.edge_length_mm": 4.0})
+
+
+def test_what_tells_k_closer_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The model of the whole field is coarse; without a choice holes alone are solved."""
+    monkeypatch.setattr(solid_torsion, "HALVED_ELEMENTS", 100)
+    half, words = {}, {}
+    for model in ("solid", "auto"):
+        design = DESIGN.changed({"solver.tolerance_pct": 0.01, "solver.model": model})
+        shaft = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
+        found = part_stiffness.part_stiffness(shaft)
+        half[model], words[model] = found.half_width, found.shortfall.words
+    assert half["auto"] < half["solid"] / 3
+    assert 'solver.model = "auto" tells K closer' in words["solid"]
+    assert words["auto"].endswith("; raise solver.tolerance_pct")
+    stated = STATED.changed({"solver.tolerance_pct": 0.01})
+    found = part_stiffness.part_stiffness(
+        AnalysisContext(stated, Cache(tmp_path), Progress()).part("shaft")
+    )
+    assert "without solver.edge_length_mm" in found.shortfall.words
