@@ -7,8 +7,11 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.fea.errors import SolidError, TooManyElementsError
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import part_stiffness, solid_torsion
+from flexspline.pipeline import part_meshes, part_stiffness, solid_torsion
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -34,3 +37,19 @@ def test_what_tells_k_closer_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
         AnalysisContext(stated, Cache(tmp_path), Progress()).part("shaft")
     )
     assert "without solver.edge_length_mm" in found.shortfall.words
+
+
+def test_a_stated_edge_that_asks_for_too_much_is_refused_with_one_that_fits(tmp_path: Path) -> None:
+    """Not with the advice to state it."""
+    short = AnalysisContext(
+        DESIGN.changed({"solver.edge_length_mm": 0.15}), Cache(tmp_path), Progress()
+    ).part("shaft")
+    with pytest.raises(
+        SolidError, match=r"solver\.edge_length_mm = 0\.15 asks for .* fits$"
+    ) as refused:
+        part_stiffness.part_stiffness(short)
+    assert "unless" not in str(refused.value)
+    fits = first_spec(short.part, float(str(refused.value).split()[-2]))
+    with pytest.raises(TooManyElementsError) as counted:
+        part_meshes.swept_mesh(short.part, short.sector.degrees, fits, None, 0)
+    assert 50_000 < counted.value.elements < MOST_ELEMENTS
