@@ -27,7 +27,7 @@ from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.solid.torsion_field import FullTorsion, TorsionCorrection, TorsionSolver
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.mesh_words import remedy
+from flexspline.pipeline.mesh_words import long_solve, remedy
 from flexspline.pipeline.part_meshes import (
     FIRST_ELEMENTS,
     KINDS,
@@ -252,6 +252,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         made.append(meshes.meshed(spec))
         if made[-1].kind != made[0].kind:
             raise OtherKindError(made[-1].kind)
+        if said := long_solve(model, made[-1].mesh.elements):
+            model.context.progress.note(f"  {model.name}: {said}")
         return made[-1].mesh
 
     def halved(mesh: TetMesh) -> TypeGuard[BisectableMesh]:

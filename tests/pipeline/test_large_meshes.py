@@ -11,7 +11,7 @@ from flexspline.fea.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import part_meshes, part_stiffness, solid_torsion
+from flexspline.pipeline import mesh_words, part_meshes, part_stiffness, solid_torsion
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -53,3 +53,14 @@ def test_a_stated_edge_that_asks_for_too_much_is_refused_with_one_that_fits(tmp_
     with pytest.raises(TooManyElementsError) as counted:
         part_meshes.swept_mesh(short.part, short.sector.degrees, fits, None, 0)
     assert 50_000 < counted.value.elements < MOST_ELEMENTS
+
+
+def test_a_long_solve_is_announced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mesh_words, "LONG_ELEMENTS", 1000)
+    said: list[str] = []
+    shaft = AnalysisContext(STATED, Cache(tmp_path), Progress(said.append)).part("shaft")
+    elements = part_stiffness.part_stiffness(shaft).levels[0].elements
+    announced = f"{elements} elements by solver.edge_length_mm = 4: solved in about 2 s"
+    (before,) = (i for i, line in enumerate(said) if announced in line)
+    assert any(f"{elements} elements, K ±" in line for line in said[before + 1 :])
+    assert not any("solved in about" in line for line in said[:before])
