@@ -20,9 +20,10 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import (
     MM_PER_M,
-    diameter_in_metres,
+    fitting_diameters_mm,
     fitting_module_mm,
     fitting_modules_mm,
+    looks_like_metres,
     module_hint,
     with_fitting_module,
 )
@@ -50,7 +51,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from flexspline_faults(design.flexspline, ring_ends(design))
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
-    yield from _metre_faults(design)
+    yield from _diameter_faults(design)
     yield from _module_faults(design)
     yield from tooth_faults(design)
     yield from wave_generator_faults(design)
@@ -98,7 +99,8 @@ def _module_faults(design: Design) -> Iterator[DesignError]:
     refused = next(_by_module(design), None)
     if refused is None:
         return
-    if module_hint(design):
+    judged = with_fitting_module(design)
+    if judged is not design:
         low, high = fitting_modules_mm(design)
         yield DesignError(
             "gear.module_mm",
@@ -107,20 +109,26 @@ def _module_faults(design: Design) -> Iterator[DesignError]:
             f"{2 * design.flexspline.ring_radius:.4g} mm, some {fitting_module_mm(design):.2g}; else no "
             f"gear of that size has {refused.key} = {refused.value:g}",
         )
-    yield from _by_module(with_fitting_module(design))
+    yield from _by_module(judged)
 
 
-def _metre_faults(design: Design) -> Iterator[DesignError]:
+def _diameter_faults(design: Design) -> Iterator[DesignError]:
     """A diameter of 0.04 mm that is built takes a minute and ends in figures of nothing."""
-    fitting, inner_mm = diameter_in_metres(design), design.flexspline.inner_diameter_mm
-    if fitting is not None:
-        low, high = fitting
-        yield DesignError(
-            "flexspline.inner_diameter_mm",
-            inner_mm,
-            f"must be from {low:.4g} to {high:.4g} mm, which module and teeth fit; it looks like metres: "
-            f"{MM_PER_M * inner_mm:g} mm",
-        )
+    inner_mm, stroke = design.flexspline.inner_diameter_mm, design.w0_mm
+    metres = looks_like_metres(design)
+    if not metres and (inner_mm > 2 * stroke or not module_hint(design)):
+        return
+    low, high = fitting_diameters_mm(design)
+    why = (
+        f"it looks like metres: {MM_PER_M * inner_mm:g} mm"
+        if metres
+        else f"the wave generator's stroke of {stroke:.4g} mm is no less than the tube's radius"
+    )
+    yield DesignError(
+        "flexspline.inner_diameter_mm",
+        inner_mm,
+        f"must be from {max(low, 2 * stroke):.4g} to {high:.4g} mm, which module and teeth fit; {why}",
+    )
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:

@@ -43,16 +43,20 @@ def warnings(design: Design) -> tuple[str, ...]:
         _grip,
         _wave_generator_room,
         _bolts,
-        _play_edge,
+        _by_module,
         _micrometres,
-        _clearance,
         _balls,
         _ratio,
-        rated_warnings,
     )
-    by_module = (_play_edge, _clearance, rated_warnings)
+    return tuple(line for rule in rules for line in rule(design))
+
+
+def _by_module(design: Design) -> Iterator[str]:
+    """Of values that the module judges: what neither it nor the one that the ring asks for spares."""
     judged = with_fitting_module(design)
-    return tuple(line for rule in rules for line in rule(judged if rule in by_module else design))
+    for rule in (_play_edge, _clearance, rated_warnings):
+        if any(rule(design)):
+            yield from rule(judged)
 
 
 def ring_bending_stress_MPa(design: Design) -> float:

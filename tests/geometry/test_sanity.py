@@ -10,6 +10,7 @@ from example_files import EXAMPLES
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
+from flexspline.geometry.whole_gear import require_whole_gear
 
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
@@ -105,6 +106,45 @@ def test_a_diameter_in_metres_is_refused() -> None:
     for at_the_end in (1.001 * low, 0.999 * high):
         tube = {"inner_diameter_mm": at_the_end, "bolt_count": 0}
         hat.changed({f"flexspline.{key}": value for key, value in {**flange, **tube}.items()})
+
+
+@pytest.mark.parametrize("inner_mm", [0.03, 0.1, 0.3, 0.6])
+def test_a_tube_narrower_than_the_plugs_stroke_is_refused(inner_mm: float) -> None:
+    """w0 = 0.3 mm moves a wall of 0.3 mm radius to the axis; such a hat took 90 s, for 1 429 926 MPa."""
+    hat = load_design(EXAMPLES / "hat-25.toml")
+    with pytest.raises(DesignError, match=r"stroke of 0\.3 mm is no less than") as refused:
+        hat.changed({"flexspline.inner_diameter_mm": inner_mm})
+    assert refused.value.key == "flexspline.inner_diameter_mm"
+    assert not refused.value.others
+    low, high = (float(x) for x in re.findall(r"from (\S+) to (\S+) mm", str(refused.value))[0])
+    assert low < hat.flexspline.inner_diameter_mm < high
+
+
+def test_a_wrong_diameter_says_nothing_of_play_and_clearance() -> None:
+    """They fit the module, which is the hat's own; the ring's would be 0.016 mm."""
+    hat = load_design(EXAMPLES / "hat-25.toml")
+    lines = warnings(hat.changed({"flexspline.inner_diameter_mm": 1.5}))
+    assert "does not belong to this ring" in lines[0]
+    assert not any("clearance_um" in line for line in lines)
+
+
+def test_a_ring_too_small_for_any_module_is_told_a_diameter() -> None:
+    """200 teeth of 0.001 mm stand on a ring from m(100 - 1.25 - 2.25) = 0.0965 mm on, 2 µm of them wall."""
+    small = {
+        "inner_diameter_mm": 0.06, "wall_thickness_mm": 0.001, "ring_thickness_mm": 0.001,
+        "length_mm": 0.03, "ring_width_mm": 0.01, "ring_offset_mm": 0.001, "diaphragm_thickness_mm": 0.001,
+        "flange_inner_diameter_mm": 0.08, "flange_outer_diameter_mm": 0.1, "flange_thickness_mm": 0.004,
+        "inner_fillet_mm": 0.001, "outer_fillet_mm": 0.001, "bolt_count": 0,
+    }  # fmt: skip
+    hat = load_design(EXAMPLES / "hat-25.toml").changed({
+        **{f"flexspline.{key}": value for key, value in small.items()},
+        "gear.module_mm": 0.001,
+        "gear.flank_clearance_um": 0.0,
+        "bearing.radial_clearance_um": 0.0,
+    })  # fmt: skip
+    assert "it is 0.00031, less than any may be (0.001 mm)" in warnings(hat)[0]
+    with pytest.raises(DesignError, match=r"inner_diameter_mm = 0\.06: must be at least 0\.191 mm"):
+        require_whole_gear(hat)
 
 
 @pytest.mark.parametrize("clearance_um", [12.0, 60.0])
