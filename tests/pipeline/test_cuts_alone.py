@@ -51,8 +51,8 @@ def of_all_the_field(model: PartModel) -> Stiffness:
 
 def test_straight_edges_far_from_the_keyway_do_not_end_the_refinement(suite_cache: Path) -> None:
     """At the grip's edge, outside, arcs of 20° stay straight and change no land: the mesh by the errors was
-    refused, and K 17 352 (± 0.17 %) by a graded one. Graded meshes of 30 654 and 83 604 elements tell 17 352.7
-    and 17 356.8 (± 0.124 %)."""
+    refused, and K 17 352 (± 0.17 %) by a graded one. Graded meshes of 30 654 and 83 604 elements tell
+    17 352.7 and 17 356.8 (± 0.124 %)."""
     first, last = (
         {"length_mm": 8.35, "outer_diameter_mm": 17.77, "inner_diameter_mm": 10.74},
         {"length_mm": 19.91, "outer_diameter_mm": 15.76, "inner_diameter_mm": 10.74},
