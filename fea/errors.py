@@ -41,8 +41,8 @@ class TooManyElementsError(SolidError):
     def __init__(self, elements: float, most: float) -> None:
         self.elements, self.most = elements, most
         super().__init__(
-            f"the mesh would have {elements:.0f} elements or more, and none of more than {most:.0f} is made"
-            " unless solver.edge_length_mm asks for it; solver.tolerance_pct can be raised"
+            f"the mesh would have {elements:.0f} elements or more, and none of more than {most:.0f} is made;"
+            " a longer solver.edge_length_mm makes fewer"
         )
 
 

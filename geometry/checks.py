@@ -20,10 +20,12 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import (
     MM_PER_M,
-    diameter_in_metres,
+    fitting_diameters_mm,
     fitting_module_mm,
     fitting_modules_mm,
+    looks_like_metres,
     module_hint,
+    with_fitting_module,
 )
 from flexspline.geometry.play_limit import beyond_play_limit
 from flexspline.geometry.ranges import TEETH
@@ -49,14 +51,10 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from flexspline_faults(design.flexspline, ring_ends(design))
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
+    yield from _diameter_faults(design)
     yield from _module_faults(design)
-    yield from _metre_faults(design)
     yield from tooth_faults(design)
-    yield from _clearance_faults(design)
-    yield from _play_faults(design)
     yield from wave_generator_faults(design)
-    if not module_hint(design):
-        yield from rated_faults(design)
     yield from circular_spline_faults(design)
     yield from _solver_faults(design)
 
@@ -88,34 +86,49 @@ def _gear_faults(design: Design) -> Iterator[DesignError]:
         )
 
 
+def _by_module(design: Design) -> Iterator[DesignError]:
+    """Of values whose range follows from the module."""
+    yield from _clearance_faults(design)
+    yield from _play_faults(design)
+    yield from rated_faults(design)
+
+
 def _module_faults(design: Design) -> Iterator[DesignError]:
-    """A rated torque is judged by the pitch radius: where the module makes it that no gear of that size has,
-    but the ring asks for another module, the module is wrong first."""
-    if not module_hint(design) or not any(rated_faults(design)):
+    """Where the module refuses a value, but the ring asks for another module, the module is wrong first, and
+    the values are judged by that of the ring."""
+    refused = next(_by_module(design), None)
+    if refused is None:
         return
-    low, high = fitting_modules_mm(design)
-    yield DesignError(
-        "gear.module_mm",
-        design.gear.module_mm,
-        f"must be from {low:.2g} to {high:.2g} mm with {design.gear.teeth_flexspline} teeth on a ring of "
-        f"{2 * design.flexspline.ring_radius:.4g} mm, some {fitting_module_mm(design):.2g}; else no "
-        f"gear of that size has gear.rated_torque_Nm = {design.gear.rated_torque_Nm:g}",
-    )
-    fitting = design.gear.model_copy(update={"module_mm": fitting_module_mm(design)})
-    yield from rated_faults(design.model_copy(update={"gear": fitting}))
-
-
-def _metre_faults(design: Design) -> Iterator[DesignError]:
-    """A diameter of 0.04 mm that is built takes a minute and ends in figures of nothing."""
-    fitting, inner_mm = diameter_in_metres(design), design.flexspline.inner_diameter_mm
-    if fitting is not None:
-        low, high = fitting
+    judged = with_fitting_module(design)
+    if judged is not design:
+        low, high = fitting_modules_mm(design)
         yield DesignError(
-            "flexspline.inner_diameter_mm",
-            inner_mm,
-            f"must be from {low:.4g} to {high:.4g} mm, which module and teeth fit; it looks like metres: "
-            f"{MM_PER_M * inner_mm:g} mm",
+            "gear.module_mm",
+            design.gear.module_mm,
+            f"must be from {low:.2g} to {high:.2g} mm with {design.gear.teeth_flexspline} teeth on a ring of "
+            f"{2 * design.flexspline.ring_radius:.4g} mm, some {fitting_module_mm(design):.2g}; else no "
+            f"gear of that size has {refused.key} = {refused.value:g}",
         )
+    yield from _by_module(judged)
+
+
+def _diameter_faults(design: Design) -> Iterator[DesignError]:
+    """A diameter of 0.04 mm that is built takes a minute and ends in figures of nothing."""
+    inner_mm, stroke = design.flexspline.inner_diameter_mm, design.w0_mm
+    metres = looks_like_metres(design)
+    if not metres and (inner_mm > 2 * stroke or not module_hint(design)):
+        return
+    low, high = fitting_diameters_mm(design)
+    why = (
+        f"it looks like metres: {MM_PER_M * inner_mm:g} mm"
+        if metres
+        else f"the wave generator's stroke of {stroke:.4g} mm is no less than the tube's radius"
+    )
+    yield DesignError(
+        "flexspline.inner_diameter_mm",
+        inner_mm,
+        f"must be from {max(low, 2 * stroke):.4g} to {high:.4g} mm, which module and teeth fit; {why}",
+    )
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:
@@ -142,8 +155,7 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
             "bearing.radial_clearance_um",
             c,
             f"must be {span(0.0, limit, 4)} µm, c_max = 2a(1 - cos α), where the involute model "
-            'ends; bearing_play_model = "small_displacement" has no such end'
-            + (f"; {hint}" if (hint := module_hint(design)) else ""),
+            'ends; bearing_play_model = "small_displacement" has no such end',
         )
 
 

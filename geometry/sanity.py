@@ -12,7 +12,7 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import UM_PER_MM
-from flexspline.geometry.module_fit import module_hint, root_radius_mm
+from flexspline.geometry.module_fit import module_hint, root_radius_mm, with_fitting_module
 from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
@@ -43,14 +43,20 @@ def warnings(design: Design) -> tuple[str, ...]:
         _grip,
         _wave_generator_room,
         _bolts,
-        _play_edge,
+        _by_module,
         _micrometres,
-        _clearance,
         _balls,
         _ratio,
-        rated_warnings,
     )
     return tuple(line for rule in rules for line in rule(design))
+
+
+def _by_module(design: Design) -> Iterator[str]:
+    """Of values that the module judges: what neither it nor the one that the ring asks for spares."""
+    judged = with_fitting_module(design)
+    for rule in (_play_edge, _clearance, rated_warnings):
+        if any(rule(design)):
+            yield from rule(judged)
 
 
 def ring_bending_stress_MPa(design: Design) -> float:

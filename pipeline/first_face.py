@@ -13,12 +13,18 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import with_mount_from
-from flexspline.geometry.outline import Meridian, SAME_mm
+from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.percent import percent
 
 ESTIMATE_WIDTH = 0.02
 """Of both bodies' bounds of K: 0.1 s each; K itself is within 0.1 % of that of bounds ten times closer."""
+LEAST_SHARE = 0.002
+"""By which K_e is said to be larger, at least: twice what each K may be off by."""
+LEAST_RING_mm, LEAST_RING_SHARE = 0.1, 0.1
+"""Width of a ring of two faces that touch, at least, and as a share of the flange's, of small parts. Each
+ring lies between edges of two parts, and an edge that a drawing calls sharp may be broken by 0.05 mm (ISO
+13715): a narrower ring is not there in the parts as made."""
 SPLIT_MM = 0.5
 """Of the first segment: so much of it is hollowed, to leave the face under the flange alone."""
 ANY = Material(name="any", youngs_modulus_GPa=1.0, poissons_ratio=0.3)
@@ -28,10 +34,20 @@ KEPT = 64
 
 
 def held_beyond_flange(design: Design) -> bool:
-    """Whether K_e's shaft is held where the hat's flange does not touch it."""
-    f = design.flexspline
-    face = design.shaft.segment[0]
-    return not f.inward and face.inner_diameter_mm < f.size(f.land.inner) - SAME_mm
+    """Whether K_e's shaft is held where the hat's flange does not touch it; by its dimensions alone."""
+    if design.flexspline.inward:
+        return False
+    inner = design.flexspline.size(design.flexspline.land.inner)
+    beyond = (inner - design.shaft.segment[0].inner_diameter_mm) / 2
+    return beyond > _least_ring_mm(design) or not touches(design)
+
+
+def touches(design: Design) -> bool:
+    """Whether a hat's flange and the shaft's first face have a ring in common."""
+    f, face = design.flexspline, design.shaft.segment[0]
+    inner = max(f.size(f.land.inner), face.inner_diameter_mm)
+    outer = min(f.size(f.land.outer), face.outer_diameter_mm)
+    return (outer - inner) / 2 >= _least_ring_mm(design)
 
 
 def excess(design: Design) -> float | None:
@@ -39,18 +55,27 @@ def excess(design: Design) -> float | None:
 
     None where the flange does not touch the first face, or no mesh gives it.
     """
-    inner = design.flexspline.size(design.flexspline.land.inner)
-    if inner >= design.shaft.segment[0].outer_diameter_mm - SAME_mm:
+    if not touches(design):
         return None
     shaft = replace(design.part("shaft").without_holes(), material=ANY)
     try:
-        return _excess(shaft, inner / 2)
+        return _excess(shaft, design.flexspline.size(design.flexspline.land.inner) / 2)
     except ComputationError:
         return None
 
 
+def is_too_large(design: Design) -> bool:
+    """Whether the shaft is `held_beyond_flange`, and K_e larger by more than the estimate may be off by."""
+    if not held_beyond_flange(design):
+        return False
+    share = excess(design)
+    return share is None or share >= LEAST_SHARE
+
+
 def why_too_large(design: Design, estimate: bool = True) -> str:
     """In words, after "K_e is"; `estimate`: with the figure, which takes up to 0.3 s."""
+    if not touches(design):
+        return "that of a shaft held on its whole first face, which the hat's flange does not touch"
     share = excess(design) if estimate else None
     by = "" if share is None else f" by about {percent(share)}"
     return f"too large{by}: held on its whole first face, not only under the hat's flange"
@@ -58,12 +83,15 @@ def why_too_large(design: Design, estimate: bool = True) -> str:
 
 def too_large_line(design: Design, estimate: bool = True) -> str:
     """The warning, with its remedy."""
+    why = why_too_large(design, estimate)
+    if not touches(design):
+        return f"K_e is {why}; {_apart(design)}"
     f, first = design.flexspline, design.shaft.segment[0]
     split = min(SPLIT_MM, first.length_mm / 2)
     rest = first.length_mm - split
     holes = " (its bolt holes then end there)" if design.shaft.bolt_count else ""
     return (
-        f"K_e is {why_too_large(design, estimate)}; its bounds do not count that, and it may change with "
+        f"K_e is {why}; its bounds do not count that, and it may change with "
         "shaft.segment[0].length_mm the wrong way. Remedy: split the first [[shaft.segment]] into one with "
         f"length_mm = {split:g} and inner_diameter_mm = {f.size(f.land.inner):g} (flexspline.{f.land.inner})"
         f"{holes} and one with length_mm = {rest:g} and the old diameters"
@@ -71,8 +99,29 @@ def too_large_line(design: Design, estimate: bool = True) -> str:
 
 
 def too_large_lines(design: Design) -> tuple[str, ...]:
-    """`too_large_line` where the shaft is `held_beyond_flange`."""
-    return (too_large_line(design),) if held_beyond_flange(design) else ()
+    """`too_large_line` where it `is_too_large`."""
+    return (too_large_line(design),) if is_too_large(design) else ()
+
+
+def _least_ring_mm(design: Design) -> float:
+    """Less is no ring."""
+    f = design.flexspline
+    flange = (f.size(f.land.outer) - f.size(f.land.inner)) / 2
+    return min(LEAST_RING_mm, LEAST_RING_SHARE * flange)
+
+
+def _apart(design: Design) -> str:
+    """Where the two faces are, and which diameter makes them touch."""
+    f, face = design.flexspline, design.shaft.segment[0]
+    inner, outer = f.size(f.land.inner), f.size(f.land.outer)
+    flange = (
+        f"the flange lies between diameters of {inner:g} and {outer:g} mm (flexspline.{f.land.inner}, "
+        f"{f.land.outer}), the face between {face.inner_diameter_mm:g} and {face.outer_diameter_mm:g}, and a "
+        f"common ring of less than {_least_ring_mm(design):.3g} mm does not count. Remedy: "
+    )
+    if face.outer_diameter_mm < outer:
+        return f"{flange}shaft.segment[0].outer_diameter_mm = {outer:g}"
+    return f"{flange}shaft.segment[0].inner_diameter_mm = {inner:g}"
 
 
 @lru_cache(maxsize=KEPT)

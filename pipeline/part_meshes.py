@@ -26,6 +26,7 @@ from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tagged import TaggedSurface
+from flexspline.pipeline.fitting_edge import StatedEdgeError, fitting_edge_mm
 from flexspline.pipeline.parts import LAYERED_COARSER, PartModel
 
 MeshKind = Literal["swept", "layered", "tetwild"]
@@ -226,8 +227,17 @@ class PartMeshes:
         ------
         DesignError : as `PartModel.is_swept`. SolidError : a sweep is asked for and fails a check.
         OtherKindError : of the `kinds` none is left.
+        StatedEdgeError : the edges that the design states ask for too many elements.
         """
-        return self._kept(spec, lambda: self._made(spec))
+        edge = self.model.context.design.solver.edge_length_mm
+        try:
+            return self._kept(spec, lambda: self._made(spec))
+        except TooManyElementsError as fault:
+            if edge is None or spec.grading != self.model.first_spec.grading:
+                raise
+            model = self.model
+            fits = fitting_edge_mm(model.part, model.sector, edge)
+            raise StatedEdgeError(model.name, edge, fault.elements, fits) from fault
 
     def _kept(self, spec: MeshSpec, make: Callable[[], MeshedPart]) -> MeshedPart:
         """From the cache, or made."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from math import inf, log2
+from math import inf
 from typing import TypeGuard
 
 import numpy as np
@@ -17,7 +17,6 @@ from flexspline.fea.errors import (
     SolidError,
     TooManyElementsError,
 )
-from flexspline.fea.scaled_estimate import ERROR_RATIOS
 from flexspline.fea.solid.bisectable import BisectableMesh
 from flexspline.fea.solid.finer import finer_by_error
 from flexspline.fea.solid.mesh import MeshSpec
@@ -28,6 +27,7 @@ from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.solid.torsion_field import FullTorsion, TorsionCorrection, TorsionSolver
 from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.mesh_words import long_solve, remedy
 from flexspline.pipeline.part_meshes import (
     FIRST_ELEMENTS,
     KINDS,
@@ -47,20 +47,12 @@ HALVED_TIMES, HALVED_LEAST = 2.0, 1.5
 halved by the errors: a shaft with blind holes 0.1 mm from its bore was known to ± 0.73 % by a first mesh of
 7 833 elements, to ± 0.26 % by 15 932. Meshes graded towards corners and patch edges gave ± 0.63, 0.61 and
 0.45 % by 13 815, 18 531 and 36 108."""
-HALVED_ELEMENTS, HALVED_LAST = 36_000, 10_000
-"""Of such a mesh at most: its solution takes 3 to 5 s of the processor; and the number beyond which a third
-mesh in layers is made only where it is expected to meet the tolerance. A first mesh is followed by a second:
-one alone cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186 s of the processor;
-in 275 s with FIRST_ELEMENTS of 20 000 and a third mesh of any, also 29. One known to ± 4.9 % by 15 000
-elements, where 0.1 % was asked, was known to ± 3.6 % by 48 000, 23 s later. Swept meshes go on up to
-HALVED_ELEMENTS: a keyed shaft was left at ± 0.10 % where 0.05 % was asked, and ± 0.05 % where 0.1 % was."""
-HALVED_ALONE = HALVED_ELEMENTS
-"""The number beyond which any further mesh is made only where it is expected to meet the tolerance: after
-106 804 it took 13 s to make, after 55 022 4.6 s, and could not be solved in the time that was left."""
-ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[1])
-"""Elements that bounds 1/x as wide take, over those there are: x to this power, where they fall slowly. Three
-shafts whose bounds fell to 0.63 to 0.67 of themselves by twice the elements missed their tolerance with one
-mesh more too, which took 4 to 7 s."""
+HALVED_ELEMENTS = 36_000
+"""Beyond so many none is made finer; its solution takes 3 to 5 s of the processor. Whether the next mesh is
+expected to meet the tolerance is not asked: a tighter one then ended earlier, with wider bounds. Three of 23
+keyed shafts in layers were known to ± 0.11 to 0.13 % where 0.05 % was asked, to ± 0.07 to 0.08 % where 0.1 %
+was, and are to ± 0.05 to 0.07 %; others of ± 0.2 to 2.1 % are known to 0.08 to 0.8 %, 5 s later on average.
+After 106 804 one took 13 s to make, after 55 022 4.6 s, and could not be solved in the time that was left."""
 UNHALVED_LAST = 40_000
 """That number for any other mesh, by fTetWild or of a body of revolution: 66 024 elements took 14.6 s of the
 processor."""
@@ -260,19 +252,17 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         made.append(meshes.meshed(spec))
         if made[-1].kind != made[0].kind:
             raise OtherKindError(made[-1].kind)
+        if said := long_solve(model, made[-1].mesh.elements):
+            model.context.progress.note(f"  {model.name}: {said}")
         return made[-1].mesh
 
     def halved(mesh: TetMesh) -> TypeGuard[BisectableMesh]:
         """Whether the next mesh follows this one's errors: no specification says where holes cause them."""
         return isinstance(mesh, BisectableMesh) and not model.part.is_revolved
 
-    def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh | None:
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh | None:
         if not halved(mesh):
             return None
-        wanted = mesh.elements * over**ELEMENTS_EXPONENT
-        last = HALVED_LAST if mesh.in_layers and mesh is not made[0].mesh else HALVED_ALONE
-        if mesh.elements > last and wanted > HALVED_ELEMENTS:
-            raise TooManyElementsError(wanted, HALVED_ELEMENTS)
         most = max(HALVED_LEAST * mesh.elements, HALVED_ELEMENTS)
         with model.context.progress.stage(f"mesh of the {model.name}"):
             # other edges are halved for fewer elements
@@ -286,7 +276,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         raise failed
 
     def most(mesh: TetMesh) -> float:
-        return inf if halved(mesh) else max(UNHALVED_LAST, mesh.elements)
+        return HALVED_ELEMENTS if halved(mesh) else max(UNHALVED_LAST, mesh.elements)
 
     found = solid_stiffness(
         MeshSequence(mesher, first, by_error, most),
@@ -300,4 +290,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]
     rim = max(1, sum(size <= most_for_lobes(model) for size in sizes)) - 1
     turned = None if found.turned is None else TurnedField.of(found.turned)
-    return TwistedPart(found.stiffness, meshed[-1], turned, meshed[rim])
+    short = found.stiffness.shortfall
+    if short:
+        short = replace(short, words=f"{short}; {remedy(model)}")
+    return TwistedPart(replace(found.stiffness, shortfall=short), meshed[-1], turned, meshed[rim])

@@ -21,9 +21,9 @@ NOT_SOLVED = (
 
 def stiffness_notes(design: Design) -> dict[str, str]:
     """What must be said beside a stiffness, by its key of result.json."""
-    from flexspline.pipeline.first_face import held_beyond_flange, why_too_large
+    from flexspline.pipeline.first_face import is_too_large, why_too_large
 
-    return {"K_e_Nm_per_rad": why_too_large(design)} if held_beyond_flange(design) else {}
+    return {"K_e_Nm_per_rad": why_too_large(design)} if is_too_large(design) else {}
 
 
 def beside_figure(passed: PassedLimit) -> str:

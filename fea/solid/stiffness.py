@@ -32,9 +32,8 @@ from flexspline.fea.types import Shortfall, Stiffness, TetMesh
 from flexspline.geometry.percent import percent
 
 Mesher = Callable[[MeshSpec], TetMesh]
-FinerByError = Callable[[TetMesh, np.ndarray, float], TetMesh | None]
-"""A mesh made finer where its elements' errors (m,) are, by the bounds' half-width over the tolerance; None
-where a specification tells the next one."""
+FinerByError = Callable[[TetMesh, np.ndarray], TetMesh | None]
+"""A mesh made finer where its elements' errors (m,) are; None where a specification tells the next one."""
 MAX_LEVELS = 5
 """Most meshes: four refinements. Far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th
 power); at them the edges shrink to 1/256 at least."""
@@ -71,7 +70,7 @@ class MeshSequence:
 
     make: Mesher
     first: MeshSpec
-    by_error: FinerByError = lambda mesh, error, over: None
+    by_error: FinerByError = lambda mesh, error: None
     most_elements: Callable[[TetMesh], float] = lambda first: inf
 
 
@@ -175,7 +174,7 @@ class _SolidTorsion:
     def finer(self, mesh: TetMesh) -> TetMesh | None:
         if len(self.meshes) == MAX_LEVELS:
             return None
-        made = self._sequence.by_error(mesh, self._errors, self.half / self._tolerance)
+        made = self._sequence.by_error(mesh, self._errors)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
             self.estimate.believed = self._field.scales.by_error
             self.estimate.falls = ERROR_RATIOS

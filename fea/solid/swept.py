@@ -37,7 +37,7 @@ from flexspline.fea.solid.swept_sizing import (
     plan_mesh,
     refuse_beyond_memory,
 )
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.outline import Meridian, SAME_mm
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import Surface, part_surfaces
 
@@ -188,9 +188,11 @@ def check_swept(mesh: BisectableMesh, part: Part) -> None:
 def _refuse_thick_land(
     mesh: BisectableMesh, surfaces: Sequence[Surface], block: SlottedTube
 ) -> None:
-    """Raise MeshQualityError where straight edges change the land between floor and bore."""
+    """Raise MeshQualityError where straight edges change the land between floor and bore; those farther out
+    are told by volume and areas."""
     for number, surface in enumerate(surfaces):
         mine = mesh.nodes[np.unique(mesh.facets[mesh.facet_surface == number])]
+        mine = mine[np.hypot(mine[:, 0], mine[:, 1]) <= block.corner + SAME_mm]
         off = np.linalg.norm(surface.project(mine) - mine, axis=1).max(initial=0.0)
         if off > STRAIGHT_OF_LAND * block.land:
             raise MeshQualityError(

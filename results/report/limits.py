@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PART_NAMES
 from flexspline.geometry.percent import percent
-from flexspline.pipeline.first_face import excess, held_beyond_flange
+from flexspline.pipeline.first_face import excess, is_too_large, touches, why_too_large
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
@@ -162,8 +162,10 @@ def _buckles(content: ReportContent, limit: LinearLimit) -> str:
 
 def _beyond_flange(design: Design) -> str:
     """What the whole face does to K_e of a hat's shaft."""
-    if not held_beyond_flange(design):
+    if not is_too_large(design):
         return ""
+    if not touches(design):
+        return f" K_e is {why_too_large(design)}."
     share = excess(design)
     by = "" if share is None else f" by about {percent(share)}"
     return (

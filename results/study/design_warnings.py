@@ -8,7 +8,7 @@ from itertools import chain
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
-from flexspline.pipeline.first_face import held_beyond_flange, too_large_line
+from flexspline.pipeline.first_face import held_beyond_flange, is_too_large, too_large_line
 from flexspline.pipeline.stress_limits import PART_OF, Peak, TabledPeak, limits_passed
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
@@ -45,6 +45,7 @@ def design_warnings(result: StudyResult) -> list[str]:
     said = [
         f"{name}{_in_how_many(count, w.kind, result)}: {w.line or too_large_line(design)}"
         for name, design, w in told
+        if w.kind != WHOLE_FACE or is_too_large(design)
     ]
     known = {*first, *of_best}
     if more := [str(row.slot) for row in others if not known.issuperset(_of_row(result, row))]:

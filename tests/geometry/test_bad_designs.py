@@ -58,10 +58,17 @@ ONE_KEY = [
     cup(("flexspline.wal_thickness_mm", "0.4", "wall_thickness_mm"), flexspline__wal_thickness_mm="0.4"),
     # 3000 walls of 0.4 mm
     cup(("flexspline.length_mm = 9000", "to 1200 mm", "up to 3000 times wall_thickness_mm = 0.4", "at least 3"), flexspline__length_mm="9000"),
-    cup(("load.torque_Nmm = 500", "did you mean torque_Nm? divide a value in Nmm by 1000"), load__torque_Nmm="500", load__torque_Nm=None),
+    cup(("load.torque_Nmm = 500", "did you mean torque_Nm? divide a value in N·mm by 1000"), load__torque_Nmm="500", load__torque_Nm=None),
     cup(("flexspline.wall_thickness_um", "did you mean wall_thickness_mm? divide a value in um by 1000"), flexspline__wall_thickness_um="400.0", flexspline__wall_thickness_mm=None),
     cup(("material.flexspline.youngs_modulus_MPa", "did you mean youngs_modulus_GPa? divide a value in MPa by 1000"), material__flexspline__youngs_modulus_MPa="206000.0", material__flexspline__youngs_modulus_GPa=None),
     cup(("gear.flank_clearance_mm", "did you mean flank_clearance_um? multiply a value in mm by 1000"), gear__flank_clearance_mm="0.004", gear__flank_clearance_um=None),
+    # 4.4482216 N times 25.4 mm; 9.80665 N times 10 mm; 4.4482216 N over 645.16 mm² (NIST SP 811, appendix B.8)
+    cup(("load.torque_in_lbf", "did you mean torque_Nm? multiply a value in in·lbf by 0.112985"), load__torque_in_lbf="5", load__torque_Nm=None),
+    cup(("load.torque_lb_ft", "did you mean torque_Nm? multiply a value in ft·lbf by 1.35582"), load__torque_lb_ft="5", load__torque_Nm=None),
+    cup(("load.torque_kgfcm", "did you mean torque_Nm? multiply a value in kgf·cm by 0.0980665"), load__torque_kgfcm="5", load__torque_Nm=None),
+    cup(("load.torque_MNm", "did you mean torque_Nm? multiply a value in MN·m by 1000000"), load__torque_MNm="5e-7", load__torque_Nm=None),
+    cup(("material.flexspline.fatigue_limit_psi", "did you mean fatigue_limit_MPa? multiply a value in psi by 0.00689476"), material__flexspline__fatigue_limit_psi="7e4", material__flexspline__fatigue_limit_MPa=None),
+    cup(("flexspline.length_in", "did you mean length_mm? multiply a value in inches by 25.4"), flexspline__length_in="1.2", flexspline__length_mm=None),
     # a tenth of the ring's module is right; R = 200 mm: 2.9e-3 R³ = 23 200 N·m, a thousandth is 23.2; at R = 20 mm 2320 is the most
     cup(("gear.module_mm = 2.0: must be from", "some 0.2; else no gear of that size has gear.rated_torque_Nm = 20"), gear__module_mm="2.0", gear__rated_torque_Nm="20.0"),
     cup(("gear.module_mm = 0.1: must be from", "and gear.rated_torque_Nm = 100000.0: must be from"), gear__module_mm="0.1", gear__rated_torque_Nm="1e5"),

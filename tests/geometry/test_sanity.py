@@ -10,6 +10,7 @@ from example_files import EXAMPLES
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
+from flexspline.geometry.whole_gear import require_whole_gear
 
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
@@ -107,7 +108,62 @@ def test_a_diameter_in_metres_is_refused() -> None:
         hat.changed({f"flexspline.{key}": value for key, value in {**flange, **tube}.items()})
 
 
-def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:
+@pytest.mark.parametrize("inner_mm", [0.03, 0.1, 0.3, 0.6])
+def test_a_tube_narrower_than_the_plugs_stroke_is_refused(inner_mm: float) -> None:
+    """w0 = 0.3 mm moves a wall of 0.3 mm radius to the axis; such a hat took 90 s, for 1 429 926 MPa."""
+    hat = load_design(EXAMPLES / "hat-25.toml")
+    with pytest.raises(DesignError, match=r"stroke of 0\.3 mm is no less than") as refused:
+        hat.changed({"flexspline.inner_diameter_mm": inner_mm})
+    assert refused.value.key == "flexspline.inner_diameter_mm"
+    assert not refused.value.others
+    low, high = (float(x) for x in re.findall(r"from (\S+) to (\S+) mm", str(refused.value))[0])
+    assert low < hat.flexspline.inner_diameter_mm < high
+
+
+def test_a_wrong_diameter_says_nothing_of_play_and_clearance() -> None:
+    """They fit the module, which is the hat's own; the ring's would be 0.016 mm."""
+    hat = load_design(EXAMPLES / "hat-25.toml")
+    lines = warnings(hat.changed({"flexspline.inner_diameter_mm": 1.5}))
+    assert "does not belong to this ring" in lines[0]
+    assert not any("clearance_um" in line for line in lines)
+
+
+def test_a_ring_too_small_for_any_module_is_told_a_diameter() -> None:
+    """200 teeth of 0.001 mm stand on a ring from m(100 - 1.25 - 2.25) = 0.0965 mm on, 2 µm of them wall."""
+    small = {
+        "inner_diameter_mm": 0.06, "wall_thickness_mm": 0.001, "ring_thickness_mm": 0.001,
+        "length_mm": 0.03, "ring_width_mm": 0.01, "ring_offset_mm": 0.001, "diaphragm_thickness_mm": 0.001,
+        "flange_inner_diameter_mm": 0.08, "flange_outer_diameter_mm": 0.1, "flange_thickness_mm": 0.004,
+        "inner_fillet_mm": 0.001, "outer_fillet_mm": 0.001, "bolt_count": 0,
+    }  # fmt: skip
+    hat = load_design(EXAMPLES / "hat-25.toml").changed({
+        **{f"flexspline.{key}": value for key, value in small.items()},
+        "gear.module_mm": 0.001,
+        "gear.flank_clearance_um": 0.0,
+        "bearing.radial_clearance_um": 0.0,
+    })  # fmt: skip
+    assert "it is 0.00031, less than any may be (0.001 mm)" in warnings(hat)[0]
+    with pytest.raises(DesignError, match=r"inner_diameter_mm = 0\.06: must be at least 0\.191 mm"):
+        require_whole_gear(hat)
+
+
+@pytest.mark.parametrize("clearance_um", [12.0, 60.0])
+def test_a_play_refused_for_a_slipped_module_is_the_modules_fault(clearance_um: float) -> None:
+    """At its 0.02 mm the play ends at 2.4 µm; by the 0.2 mm of the ring it is wrong beyond 24 µm."""
     cup = load_design(EXAMPLES / "xb1-40.toml")
-    with pytest.raises(DesignError, match=r"radial_clearance_um.*gear\.module_mm = 0\.02 does not"):
-        cup.changed({"gear.module_mm": 0.02})
+    with pytest.raises(DesignError) as refused:
+        cup.changed({"gear.module_mm": 0.02, "bearing.radial_clearance_um": clearance_um})
+    assert refused.value.key == "gear.module_mm"
+    assert f"no gear of that size has bearing.radial_clearance_um = {clearance_um:g}" in str(
+        refused.value
+    )
+    others = [fault.key for fault in refused.value.others]
+    assert others == (["bearing.radial_clearance_um"] if clearance_um > 24.2 else [])
+
+
+def test_a_slipped_module_warns_of_itself_alone() -> None:
+    """Rated torque, play and clearance would be usual with the ring's module of 0.2 mm."""
+    cup = load_design(EXAMPLES / "xb1-40.toml").changed({"gear.rated_torque_Nm": 23.0})
+    assert not warnings(cup)
+    (line,) = warnings(cup.changed({"gear.module_mm": 0.1, "gear.flank_clearance_um": 20.0}))
+    assert "gear.module_mm = 0.1 does not belong to this ring" in line

@@ -28,7 +28,13 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline import part_meshes, part_stiffness, parts, rim_size, solid_torsion
+from flexspline.pipeline import (
+    part_meshes,
+    part_stiffness,
+    parts,
+    rim_size,
+    solid_torsion,
+)
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_meshes import MeshedPart, OtherKindError, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
@@ -252,19 +258,32 @@ def test_a_first_mesh_in_layers_is_made_coarser_too(
         assert coarser.mesh.elements < usual.mesh.elements
 
 
-@pytest.mark.parametrize(("most", "alone"), [(10**6, False), (100, True)])
+@pytest.mark.parametrize("most", [100, 10**6])
 def test_a_first_mesh_in_layers_that_is_very_large_is_the_only_one(
-    most: int, alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A second one would take longer to make than is left to solve it."""
-    monkeypatch.setattr(solid_torsion, "HALVED_ELEMENTS", 100)
-    monkeypatch.setattr(solid_torsion, "HALVED_ALONE", most)
+    monkeypatch.setattr(solid_torsion, "HALVED_ELEMENTS", most)
+    monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
     design = DESIGN.changed({"solver.tolerance_pct": 0.1, "solver.model": "solid"})
     part = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
     found = solid_torsion.twisted(part, part.tolerance, kinds=("layered",)).stiffness
-    assert (len(found.levels) == 1) is alone
-    assert ("elements or more" in str(found.shortfall)) is alone
+    assert len(found.levels) == (1 if most == 100 else 2)
+    assert ("none is refined beyond 100;" in str(found.shortfall)) is (most == 100)
     assert found.half_width > part.tolerance
+
+
+def test_a_tolerance_out_of_reach_ends_no_earlier(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the next mesh would not have met it, none was made of a mesh in layers: a looser one, which that
+    mesh met, had narrower bounds."""
+    monkeypatch.setattr(solid_torsion, "HALVED_ELEMENTS", 20_000)
+    design = DESIGN.changed({"solver.model": "solid"})
+    model = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
+    found = solid_torsion.twisted(model, 1e-8, kinds=("layered",)).stiffness
+    *_, before, last = (level.elements for level in found.levels)
+    assert before <= 20_000 < last
 
 
 def test_fTetWild_has_little_time_where_an_enclosure_answers(

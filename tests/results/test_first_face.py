@@ -13,13 +13,20 @@ from study_bench import study_of
 import flexspline
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.first_face import excess, held_beyond_flange, too_large_lines
+from flexspline.pipeline.first_face import (
+    LEAST_SHARE,
+    excess,
+    held_beyond_flange,
+    too_large_lines,
+    touches,
+)
 from flexspline.pipeline.given import DesignWarning
 from flexspline.pipeline.revolved import torsion
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.slope import Slope
+from flexspline.results.limit_words import stiffness_notes
 from flexspline.results.studio.answer import agreement, design_warnings_shown, without
 from flexspline.results.study.design_warnings import design_warnings
 from flexspline.results.study.sensitivity import record
@@ -82,13 +89,56 @@ def test_the_warning_says_how_much_and_its_remedy_ends_it() -> None:
     assert not too_large_lines(CUP)
 
 
-def test_where_the_flange_does_not_reach_the_shaft_no_figure_is_said() -> None:
-    first = HAT.shaft.segment[0].model_copy(update={"outer_diameter_mm": 70.0})
-    shaft = HAT.shaft.model_copy(update={"segment": (first, *HAT.shaft.segment[1:])})
-    narrow = HAT.model_copy(update={"shaft": shaft})
-    assert held_beyond_flange(narrow)
-    assert excess(narrow) is None
-    assert "too large:" in too_large_lines(narrow)[0]
+def with_face(inner_mm: float, outer_mm: float) -> Design:
+    """Of the hat's shaft, whose hub is 46 mm and the flange from 78 to 96 mm."""
+    wide = {"shaft.segment[1].outer_diameter_mm": 110.0} if inner_mm > 46.0 else {}
+    return HAT.changed({
+        "shaft.bolt_count": 0,
+        "flexspline.bolt_count": 0,
+        "shaft.segment[0].inner_diameter_mm": inner_mm,
+        "shaft.segment[0].outer_diameter_mm": outer_mm,
+        **wide,
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize("outer_mm", [60.0, 78.0, 78.0001, 78.1])
+def test_where_the_flange_does_not_touch_the_shaft_the_remedy_makes_it(outer_mm: float) -> None:
+    """Two sharp edges, each broken by up to 0.05 mm (ISO 13715), leave nothing of a ring of 0.05 mm."""
+    apart = with_face(30.0, outer_mm)
+    assert held_beyond_flange(apart)
+    assert not touches(apart)
+    assert excess(apart) is None
+    (line,) = too_large_lines(apart)
+    assert "which the hat's flange does not touch" in line
+    assert "inner_diameter_mm = 78" not in line
+    (key, value) = re.findall(r"Remedy: (shaft\S+) = (\S+)$", line)[0]
+    remedied = apart.changed({key: float(value)})
+    assert touches(remedied)
+    assert "too large by about" in too_large_lines(remedied)[0]
+
+
+def test_a_face_outside_the_flange_does_not_touch_it_either() -> None:
+    outside = with_face(97.0, 120.0)
+    (line,) = too_large_lines(outside)
+    assert line.endswith("Remedy: shaft.segment[0].inner_diameter_mm = 78")
+    assert not too_large_lines(with_face(78.0, 120.0))
+
+
+def test_a_ring_wider_than_two_broken_edges_touches() -> None:
+    assert "too large by about" in too_large_lines(with_face(30.0, 78.3))[0]
+
+
+def test_nothing_is_said_below_the_estimates_accuracy() -> None:
+    """A shaft as wide as the flange, held 0.5 mm beyond it: the twist is all along the shaft."""
+    tube = with_face(77.0, 96.0)
+    share = excess(tube)
+    assert share is not None
+    assert abs(share) < LEAST_SHARE
+    assert held_beyond_flange(tube)
+    assert not too_large_lines(tube)
+    assert not stiffness_notes(tube)
+    assert not held_beyond_flange(with_face(77.9, 96.0))
+    assert held_beyond_flange(with_face(77.7, 96.0))
 
 
 def test_a_study_says_it_of_its_best_design() -> None:

@@ -271,6 +271,11 @@ def test_the_thinnest_race_and_the_smallest_balls_still_have_a_curve(balls: int)
         ({"gear.teeth_circular_spline": 400}, "must be at most 218"),
         # ring of 19.75 mm: m(100 + 1) beyond it, m(100 - 1.25 - 2.25) within
         ({"gear.module_mm": 0.4}, "must be from 0.1956 to 0.2046 mm"),
+        # its stroke of 2 mm is too much as well, for the module alone
+        (
+            {"gear.module_mm": 2.0, "gear.rated_torque_Nm": 100.0},
+            "gear.module_mm = 2.0: must be from 0.1956 to 0.2046 mm",
+        ),
         (
             {"gear.module_mm": 0.1, "bearing.radial_clearance_um": 10.0},
             "must be from 0.1956 to 0.2046 mm",

@@ -348,7 +348,7 @@ def test_a_narrow_neck_is_found_by_its_error() -> None:
     exact = torsional_stiffness(part.meridian, material, "grip", 2e-4)
     degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(4.0)
 
-    def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh:
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh:
         assert isinstance(mesh, BisectableMesh)
         return finer_by_error(part, mesh, error, 2 * mesh.elements)
 
@@ -376,7 +376,7 @@ def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
     def mesher(spec: MeshSpec) -> TetMesh:
         return later(layered_mesh(part, sector_of(part, "torsion").degrees, spec))
 
-    def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh:
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh:
         assert isinstance(mesh, BisectableMesh)
         return later(finer_by_error(part, mesh, error, 2 * mesh.elements))
 
