@@ -28,7 +28,7 @@ from flexspline.geometry.module_fit import (
     with_fitting_module,
 )
 from flexspline.geometry.play_limit import beyond_play_limit
-from flexspline.geometry.ranges import TEETH
+from flexspline.geometry.ranges import TEETH, LENGTH_mm
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
 
@@ -105,7 +105,7 @@ def _module_faults(design: Design) -> Iterator[DesignError]:
         yield DesignError(
             "gear.module_mm",
             design.gear.module_mm,
-            f"must be from {low:.2g} to {high:.2g} mm with {design.gear.teeth_flexspline} teeth on a ring of "
+            f"must be {span(low, high, 3)} mm with {design.gear.teeth_flexspline} teeth on a ring of "
             f"{2 * design.flexspline.ring_radius:.4g} mm, some {fitting_module_mm(design):.2g}; else no "
             f"gear of that size has {refused.key} = {refused.value:g}",
         )
@@ -116,9 +116,12 @@ def _diameter_faults(design: Design) -> Iterator[DesignError]:
     """A diameter of 0.04 mm that is built takes a minute and ends in figures of nothing."""
     inner_mm, stroke = design.flexspline.inner_diameter_mm, design.w0_mm
     metres = looks_like_metres(design)
-    if not metres and (inner_mm > 2 * stroke or not module_hint(design)):
-        return
     low, high = fitting_diameters_mm(design)
+    low = max(low, 2 * stroke)
+    if not metres and (
+        inner_mm > 2 * stroke or not module_hint(design) or not _may_have(design, low)
+    ):
+        return
     why = (
         f"it looks like metres: {MM_PER_M * inner_mm:g} mm"
         if metres
@@ -127,8 +130,15 @@ def _diameter_faults(design: Design) -> Iterator[DesignError]:
     yield DesignError(
         "flexspline.inner_diameter_mm",
         inner_mm,
-        f"must be from {max(low, 2 * stroke):.4g} to {high:.4g} mm, which module and teeth fit; {why}",
+        f"must be {span(low, high, 4)} mm, which module and teeth fit; {why}",
     )
+
+
+def _may_have(design: Design, inner_mm: float) -> bool:
+    """Whether the rest of the flexspline allows an inner diameter; where not, the module is wrong."""
+    part = design.flexspline.model_copy(update={"inner_diameter_mm": inner_mm})
+    other = design.model_copy(update={"flexspline": part})
+    return inner_mm <= LENGTH_mm.high and not any(flexspline_faults(part, ring_ends(other)))
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:
