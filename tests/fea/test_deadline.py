@@ -25,8 +25,8 @@ FINE = 1e-5
 SECONDS_A_MESH = 10.0
 LARGE = {("torsion", 2), ("torsion", 3), ("free", 3)}
 """The second and third mesh of torsion have 2.0 and 1.6 times the elements of the one before, of 28 and 21 s
-by 2^1.5, the third of "free" 2.0 times; the fourth 1.9 and 2.3 times, of 26 and 35 s: with 20 s left after two
-or three meshes no more are made."""
+by 2^1.5, the third of "free" 2.0 times; the fourth 1.9 and 2.3 times, of 26 and 35 s: with 20 s left after
+two or three meshes no more are made."""
 
 
 class Clock:
