@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
 from functools import cache
 from typing import Any
 from weakref import finalize
@@ -27,7 +26,8 @@ the seconds of factors, and numbers from 0 (34)."""
 PLANE_SETTINGS = SETTINGS | {1: 0, 23: 0}
 """For the matrix of a plane mesh: ordered by minimum degree (1), factors by the classic method (23). First
 harmonic of a cup, one core: 2 200, 5 800, 17 000, 48 000, 148 000 unknowns 3.7, 10.2, 36, 129, 602 ms; by
-SETTINGS 4.5, 15.4, 56, 253, 805."""
+SETTINGS 4.5, 15.4, 56, 253, 805. For one thread only: with two in each of two processes on two cores,
+`stiffness` of `xb1-40` takes 11 s in place of 2.2."""
 IN_SINGLE = 27
 """iparm: factors, matrix and right-hand sides of four bytes."""
 
@@ -37,16 +37,15 @@ class PardisoFactors:
 
     They are used with as many threads as they were made with, whoever calls: each thread has a number of its
     own, and factors of two threads substituted by one, or of one by two, give another vector without an error
-    (‖Ku − f‖ of 2 to 9 ‖f‖ in 79 of 80 solves).
+    (‖Ku − f‖ of 2 to 9 ‖f‖ in 79 of 80 solves). `plane`: by one thread and PLANE_SETTINGS, else by as many
+    threads as the caller has, and SETTINGS.
     """
 
-    def __init__(
-        self, matrix: csr_matrix, single: bool, settings: Mapping[int, int] = SETTINGS
-    ) -> None:
-        self._threads = _threads_of_caller()
+    def __init__(self, matrix: csr_matrix, single: bool, plane: bool = False) -> None:
+        self._threads = 1 if plane else _threads_of_caller()
         self._pt = np.zeros(64, np.int64)
         self._iparm = np.zeros(64, np.int32)
-        for number, value in settings.items():
+        for number, value in (PLANE_SETTINGS if plane else SETTINGS).items():
             self._iparm[number] = value
         self._iparm[IN_SINGLE] = single
         self._type = np.float32 if single else np.float64

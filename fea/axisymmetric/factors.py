@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 
 from flexspline.fea.errors import SolveError
 from flexspline.fea.kept_entries import EntryPlaces, KeptEntries, starts_of
-from flexspline.fea.pardiso import PLANE_SETTINGS, PardisoFactors, pardiso
+from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
@@ -99,7 +99,7 @@ class PatternSolver:
                 again = before is not None and before.are_of(matrix)
                 if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
                     return solved(matrix, loads)
-                last = PardisoFactors(matrix, single=False, settings=PLANE_SETTINGS)
+                last = PardisoFactors(matrix, single=False, plane=True)
             self._factors = last
             return last.solve(loads)
 

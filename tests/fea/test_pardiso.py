@@ -7,6 +7,8 @@ import pytest
 from scipy.sparse import csr_matrix, diags, eye_array, kron
 from threadpoolctl import threadpool_limits
 
+from flexspline.fea import pardiso as module
+from flexspline.fea.mkl import mkl
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 
 pytestmark = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
@@ -44,11 +46,37 @@ def test_the_number_of_threads_may_change_between_factors_and_solve(
 
 
 def test_the_thread_that_calls_keeps_its_own_number() -> None:
-    from flexspline.fea.mkl import mkl
-
     with threadpool_limits(1, "blas"):
         factors = PardisoFactors(block(), single=False)
     with threadpool_limits(2, "blas"):
         before = mkl().MKL_Get_Max_Threads()
         factors.solve(np.ones(3 * SIDE**3))
         assert mkl().MKL_Get_Max_Threads() == before
+
+
+class SeenLibrary:
+    """oneMKL, and every number of threads it was asked to use."""
+
+    def __init__(self) -> None:
+        self.asked: list[int] = []
+
+    def MKL_Set_Num_Threads_Local(self, count: int) -> int:
+        self.asked.append(count)
+        return int(mkl().MKL_Set_Num_Threads_Local(count))
+
+    def MKL_Get_Max_Threads(self) -> int:
+        return int(mkl().MKL_Get_Max_Threads())
+
+
+@pytest.mark.parametrize(("plane", "threads"), [(True, 1), (False, 2)])
+def test_a_plane_mesh_is_solved_by_one_thread(
+    plane: bool, threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With two in each of two processes on two cores, `stiffness` took five times as long."""
+    seen = SeenLibrary()
+    monkeypatch.setattr(module, "mkl", lambda: seen)
+    with threadpool_limits(2, "blas"):
+        factors = PardisoFactors(block(), single=False, plane=plane)
+        factors.solve(np.ones(3 * SIDE**3))
+        factors.release()
+    assert seen.asked[::2] == [threads] * 3  # factors, substitution, release; each then sets it back

@@ -5,7 +5,6 @@ Small matrices are ordered when their places come a second time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -35,9 +34,10 @@ def orderings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     made: list[int] = []
 
     class Seen(PardisoFactors):
-        def __init__(self, matrix: csr_matrix, single: bool, settings: Mapping[int, int]) -> None:
+        def __init__(self, matrix: csr_matrix, single: bool, plane: bool = False) -> None:
+            assert plane
             made.append(matrix.shape[0])
-            super().__init__(matrix, single, settings)
+            super().__init__(matrix, single, plane)
 
     monkeypatch.setattr(factors, "PardisoFactors", Seen)
     return made
