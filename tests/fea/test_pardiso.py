@@ -79,4 +79,6 @@ def test_a_plane_mesh_is_solved_by_one_thread(
         factors = PardisoFactors(block(), single=False, plane=plane)
         factors.solve(np.ones(3 * SIDE**3))
         factors.release()
-    assert seen.asked[::2] == [threads] * 3  # factors, substitution, release; each then sets it back
+    assert (
+        seen.asked[::2] == [threads] * 3
+    )  # factors, substitution, release; each then sets it back
