@@ -23,11 +23,15 @@ ANALYSE_AND_FACTORISE, FACTORISE, SUBSTITUTE, RELEASE = 12, 22, 33, -1
 SETTINGS = {0: 1, 1: 2, 7: 0, 9: 8, 20: 1, 23: 1, 34: 1}
 """iparm by its number from 0; not oneMKL's defaults: factors by its two-level method (23), 0.7 to 1.05 of
 the seconds of factors, and numbers from 0 (34)."""
-PLANE_SETTINGS = SETTINGS | {1: 0, 23: 0}
-"""For the matrix of a plane mesh: ordered by minimum degree (1), factors by the classic method (23). First
-harmonic of a cup, one core: 2 200, 5 800, 17 000, 48 000, 148 000 unknowns 3.7, 10.2, 36, 129, 602 ms; by
-SETTINGS 4.5, 15.4, 56, 253, 805. For one thread only: with two in each of two processes on two cores,
-`stiffness` of `xb1-40` takes 11 s in place of 2.2."""
+ONE_THREAD_SETTINGS = SETTINGS | {1: 0, 23: 0}
+"""Ordered by minimum degree (1), factors by the classic method (23). First harmonic of a cup, one core:
+2 200, 5 800, 17 000, 48 000, 148 000 unknowns 3.7, 10.2, 36, 129, 602 ms; by SETTINGS 4.5, 15.4, 56, 253,
+805. For one thread only: with two in each of two processes on two cores, `stiffness` of `xb1-40` takes 11 s
+in place of 2.2."""
+SMALL_SOLID = 50_000
+"""Unknowns of a solid mesh up to which one thread does as well: 5 200, 11 000, 20 300, 49 100 take 24, 54,
+139, 434 ms, by SETTINGS and two threads 22, 54, 150, 494. Beside a process that does the same the first three
+take 25, 55, 140 and 32, 91, 204 ms. 95 800 take 1.7 s alone, with two threads 1.3."""
 IN_SINGLE = 27
 """iparm: factors, matrix and right-hand sides of four bytes."""
 
@@ -37,15 +41,16 @@ class PardisoFactors:
 
     They are used with as many threads as they were made with, whoever calls: each thread has a number of its
     own, and factors of two threads substituted by one, or of one by two, give another vector without an error
-    (‖Ku − f‖ of 2 to 9 ‖f‖ in 79 of 80 solves). `plane`: by one thread and PLANE_SETTINGS, else by as many
-    threads as the caller has, and SETTINGS.
+    (‖Ku − f‖ of 2 to 9 ‖f‖ in 79 of 80 solves). Those of a `plane` mesh, or with at most SMALL_SOLID
+    unknowns, are made by one thread and ONE_THREAD_SETTINGS.
     """
 
     def __init__(self, matrix: csr_matrix, single: bool, plane: bool = False) -> None:
-        self._threads = 1 if plane else _threads_of_caller()
+        one_thread = plane or matrix.shape[0] <= SMALL_SOLID
+        self._threads = 1 if one_thread else _threads_of_caller()
         self._pt = np.zeros(64, np.int64)
         self._iparm = np.zeros(64, np.int32)
-        for number, value in (PLANE_SETTINGS if plane else SETTINGS).items():
+        for number, value in (ONE_THREAD_SETTINGS if one_thread else SETTINGS).items():
             self._iparm[number] = value
         self._iparm[IN_SINGLE] = single
         self._type = np.float32 if single else np.float64

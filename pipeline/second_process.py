@@ -31,7 +31,7 @@ def second_process() -> Iterator[None]:
     """While open, `results_of` may take a second process, and OpenBLAS takes one thread in each.
 
     With two threads in each of two processes they wait for each other: 2.8 s in place of 0.4. oneMKL, loaded
-    later, keeps its two: `stiffness` of three examples takes as long with one.
+    later, keeps its two for large solid meshes.
 
     Only where this process has no thread that might hold a lock at that moment: its copy would wait for it
     for ever. A server has such threads, a command has none.

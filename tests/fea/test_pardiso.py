@@ -9,18 +9,18 @@ from threadpoolctl import threadpool_limits
 
 from flexspline.fea import pardiso as module
 from flexspline.fea.mkl import mkl
-from flexspline.fea.pardiso import PardisoFactors, pardiso
+from flexspline.fea.pardiso import SMALL_SOLID, PardisoFactors, pardiso
 
 pytestmark = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
 
-SIDE = 24
-"""Grid points along an edge: where factors are small oneMKL uses one thread of two."""
+SIDE = 26
+"""Grid points along an edge: more unknowns than SMALL_SOLID, where factors are made by one thread."""
 
 
-def block() -> csr_matrix:
+def block(side: int = SIDE) -> csr_matrix:
     """Springs between neighbours of a grid, each point held by one of a tenth."""
-    chain = diags([-1.0, 2.1, -1.0], [-1, 0, 1], shape=(SIDE, SIDE))
-    one = eye_array(SIDE)
+    chain = diags([-1.0, 2.1, -1.0], [-1, 0, 1], shape=(side, side))
+    one = eye_array(side)
     along = (kron(kron(chain, one), one), kron(kron(one, chain), one), kron(kron(one, one), chain))
     return csr_matrix(kron(sum(along), np.diag([1.0, 2.0, 3.0])))
 
@@ -68,16 +68,21 @@ class SeenLibrary:
         return int(mkl().MKL_Get_Max_Threads())
 
 
-@pytest.mark.parametrize(("plane", "threads"), [(True, 1), (False, 2)])
-def test_a_plane_mesh_is_solved_by_one_thread(
-    plane: bool, threads: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("plane", "side", "threads"), [(True, SIDE, 1), (False, SIDE, 2), (False, SIDE - 1, 1)]
+)
+def test_plane_and_small_solid_meshes_are_solved_by_one_thread(
+    plane: bool, side: int, threads: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With two in each of two processes on two cores, `stiffness` took five times as long."""
+    """Whatever the machine offers: with two in each of two processes on two cores, `stiffness` took five
+    times as long."""
     seen = SeenLibrary()
     monkeypatch.setattr(module, "mkl", lambda: seen)
+    matrix = block(side)
+    assert (matrix.shape[0] > SMALL_SOLID) is (side == SIDE)
     with threadpool_limits(2, "blas"):
-        factors = PardisoFactors(block(), single=False, plane=plane)
-        factors.solve(np.ones(3 * SIDE**3))
+        factors = PardisoFactors(matrix, single=False, plane=plane)
+        factors.solve(np.ones(matrix.shape[0]))
         factors.release()
     assert (
         seen.asked[::2] == [threads] * 3
