@@ -11,7 +11,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.errors import SolveError
 from flexspline.fea.kept_entries import EntryPlaces, KeptEntries, starts_of
 from flexspline.fea.pardiso import PardisoFactors, pardiso
-from flexspline.fea.superlu import superlu
+from flexspline.fea.superlu import PLANE_PANEL, superlu
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 PARDISO_AT_ONCE_FROM = 800
@@ -112,4 +112,4 @@ def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> fl
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
     """K⁻¹ f of loads (N,) or (N, k), K symmetric positive definite, once."""
-    return superlu(matrix).solve(loads)
+    return superlu(matrix, PLANE_PANEL).solve(loads)

@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.errors import SolveError
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.solid.iteration import conjugate_gradients, dot
-from flexspline.fea.superlu import superlu
+from flexspline.fea.superlu import SOLID_PANEL, superlu
 
 Back = Callable[[np.ndarray], np.ndarray]
 SINGLE_FROM = 10_000
@@ -98,6 +98,6 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
 
 def _superlu(matrix: csr_matrix) -> Back:
     try:
-        return superlu(matrix).solve
+        return superlu(matrix, SOLID_PANEL).solve
     except RuntimeError as fault:  # exactly singular
         raise SolveError(f"{fault}: part of the model may be unsupported") from fault

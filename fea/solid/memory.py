@@ -17,12 +17,14 @@ from flexspline.fea.errors import MemoryShortError
 from flexspline.fea.pardiso import pardiso
 
 SolverKind = Literal["direct", "iterative"]
-DIRECT_BELOW = {True: 25_000, False: 50_000}
-"""Unknowns up to which factors are as fast as an iteration or faster, with and without MKL. Seconds of
-factors (in single precision, with their own steps) and of iteration, two threads: 30 000 0.74 and 0.25, 33
-000 0.50 and 0.29, 39 400 0.6 and 0.28, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000
-8.8 and 2.2, 270 000 13.7 and 4.2; one thread, as beside another program: 30 000 1.16 and 0.38, 39 400 1.15
-and 0.43. Where an iteration takes many steps factors follow (`steps_of_factors`)."""
+DIRECT_BELOW = 25_000
+"""Unknowns up to which factors are as fast as an iteration or faster. Without MKL, CPU s of a shaft of 41
+100, another of 46 700 and a hat's of 52 100 unknowns by factors, then by iteration: 7.1 and 1.0, 6.3 and 1.2,
+2.4 and 1.8; 20 300 0.6 either way. With MKL, seconds of factors (in single precision, with their own steps)
+and of iteration, two threads: 30 000 0.74 and 0.25, 33 000 0.50 and 0.29, 39 400 0.6 and 0.28, 64 300 2.0 and
+1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000 8.8 and 2.2, 270 000 13.7 and 4.2; one thread, as beside
+another program: 30 000 1.16 and 0.38, 39 400 1.15 and 0.43. Where an iteration takes many steps factors
+follow (`steps_of_factors`)."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 75.0
 """The same with MKL for a part that is mostly surface: it has fewer entries per unknown (65 to 73 in cups of
 one or two layers, 75 to 83 in shafts and thick hats), its factors are small, and its flat elements take many
@@ -84,7 +86,7 @@ def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False
     there = available_bytes()
     factors = direct_bytes(unknowns, entries)
     steps = iterative_bytes(unknowns, entries) if corners else inf
-    below = DIRECT_BELOW[bool(pardiso())]
+    below = DIRECT_BELOW
     if pardiso() and (slow or entries < THIN_ENTRIES * unknowns):
         below = THIN_BELOW
     if factors <= there and (unknowns <= below or not corners):
