@@ -18,7 +18,8 @@ def copies_in_rim(model: PartModel) -> int:
     return round(sector_of(model.part, "ellipse").degrees / model.sector.degrees)
 
 
-def most_for_lobes(model: PartModel) -> int:
-    """Elements of the quarter or half at most for the lobe cases and the ellipse's picture."""
-    alone = model.context.design.solver.model == "auto"
-    return HOLES_ALONE_ELEMENTS if alone else RIM_ELEMENTS
+def most_in_sector(model: PartModel) -> float:
+    """Elements of torsion's sector at most, so that the lobe cases' and the ellipse's picture stay small."""
+    holes_alone = model.context.design.solver.model == "auto"
+    most = HOLES_ALONE_ELEMENTS if holes_alone else RIM_ELEMENTS
+    return most / copies_in_rim(model)
