@@ -11,6 +11,7 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.share_range import share_faults
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -85,12 +86,12 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
             f"must be {span(least, LENGTH_mm.high, 4)} mm: the root circle's diameter is "
             f"{2 * _root_radius(design):.4g} mm",
         )
-    depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
-    low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + DEPTH_ROUNDING)
-    if depth is not None and not low <= depth <= high:
-        yield DesignError(
-            "gear.working_depth_mm",
-            depth,
-            f"must be {span(low, high, 4)} mm, {SHALLOWEST:g} to {DEEPEST:g} of "
-            f"m(z2 - z1)/2 = {stroke:.4g} mm",
-        )
+    stroke = gear.centre_distance_mm
+    yield from share_faults(
+        "gear.working_depth_mm",
+        gear.working_depth_mm,
+        (SHALLOWEST, DEEPEST),
+        stroke,
+        f"m(z2 - z1)/2 = {stroke:.4g} mm",
+        DEPTH_ROUNDING,
+    )

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from flexspline.geometry.assumed import Assumed, taken_from
-from flexspline.geometry.bounds import lengths, span
+from flexspline.geometry.bounds import lengths
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import DesignTable, Length
 from flexspline.geometry.play_limit import ROUNDING_SHARE
+from flexspline.geometry.share_range import share_faults
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -100,24 +101,21 @@ def most_balls(room: float, diameter: float) -> int:
 def wave_generator_faults(design: Design) -> Iterator[DesignError]:
     """Balls that find no room, a race that does not bend, a stroke that does not mesh."""
     given, radius = design.wave_generator, design.flexspline.inner_radius
-    stroke, w0 = design.gear.centre_distance_mm, given.deflection_mm
-    low, high = (share * stroke for share in DEFLECTION_SHARES)
-    if w0 is not None and not low <= w0 <= high:
-        yield DesignError(
-            "wave_generator.deflection_mm",
-            w0,
-            f"must be {span(low, high, 4)} mm, {DEFLECTION_SHARES[0]:g} to {DEFLECTION_SHARES[1]:g} of "
-            f"m(z2 - z1)/2 = {stroke:.4g} mm",
+    stroke, race = design.gear.centre_distance_mm, given.race_thickness_mm
+    yield from share_faults(
+        "wave_generator.deflection_mm",
+        given.deflection_mm,
+        DEFLECTION_SHARES,
+        stroke,
+        f"m(z2 - z1)/2 = {stroke:.4g} mm",
+    )
+    race_faults = list(
+        share_faults(
+            "wave_generator.race_thickness_mm", race, RACE_SHARES, radius, "the tube's inner radius"
         )
-    race = given.race_thickness_mm
-    thinnest, thickest = (share * radius for share in RACE_SHARES)
-    if race is not None and not thinnest <= race <= thickest:
-        yield DesignError(
-            "wave_generator.race_thickness_mm",
-            race,
-            f"must be {lengths(thinnest, thickest, 4)} mm, {RACE_SHARES[0]:g} to "
-            f"{RACE_SHARES[1]:g} of the tube's inner radius",
-        )
+    )
+    yield from race_faults
+    if race_faults:
         return
     room = radius - (race if race is not None else RACE_SHARE * radius)
     ball = given.ball_diameter_mm

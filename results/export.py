@@ -120,7 +120,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
         data = made.read_bytes() if made.exists() else b""
     if not _is_whole(data, path.suffix):
         raise ExportError(
-            f"{path.name} was not written whole; is the folder for temporary files (TMPDIR), "
+            f"{path.name} was not written completely; is the folder for temporary files (TMPDIR), "
             f"{temporary_folder()}, full, or the size of files limited (ulimit -f)?"
         )
     write_bytes(path, data)
