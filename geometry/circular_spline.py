@@ -1,4 +1,4 @@
-"""The circular spline: its rim, how deep its teeth work, and proportions where a design states none."""
+"""The circular spline: its rim, the working depth of its teeth, and assumed proportions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wave generator's flexible bearing: values of the design file, and proportions for the others."""
+"""The wave generator's flexible bearing: stated values, and assumed proportions for the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Readings of a sweep that come from no gear or programme: a sensor's code for a fault, a slipped digit.
+"""Wrong readings of a sweep: a sensor's fault code, a slipped digit.
 
 One torque of 1e6 N·m is the largest of its record, by which every share of torque is measured, so such rows
 go before anything is computed. What a model leaves is looked at later (`outliers.py`).
