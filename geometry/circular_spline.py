@@ -17,17 +17,18 @@ if TYPE_CHECKING:
     from flexspline.geometry.design import Design
 
 OUTER_SHARE = 1.35
-"""Outer over pitch diameter: median of one maker's component sets (CSF, sizes 14 to 58: 50, 60, 70, 85, 110,
-135, 170, 195 mm, that is 1.32 to 1.41)."""
+"""Outer diameter over pitch diameter: the median of one maker's component sets (CSF, sizes 14 to 58: 50, 60,
+70, 85, 110, 135, 170, 195 mm, which is 1.32 to 1.41)."""
 THINNEST_RIM = 0.02
-"""Of the pitch radius, outside the root circle: below, it is a foil."""
+"""Smallest rim outside the root circle, as a share of the pitch radius."""
 DEEPEST = 1.34
-"""Of m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into each other."""
+"""Largest working depth over m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into
+each other."""
 SHALLOWEST = 0.1
-"""Of m(z2 − z1)/2: teeth that touch within 13° of the major axis only."""
+"""Smallest working depth over m(z2 − z1)/2: teeth then touch only within 13° of the major axis."""
 
 DEPTH_ROUNDING = 1e-3
-"""Share by which a depth that was written with four digits may pass its end."""
+"""Share by which a depth written with four digits may exceed the limit."""
 
 
 @dataclass(frozen=True)

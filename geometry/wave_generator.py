@@ -20,21 +20,24 @@ if TYPE_CHECKING:
     from flexspline.geometry.design import Design
 
 FEWEST_BALLS, MOST_BALLS = 6, 200
-"""With fewer the rim is no ellipse between them; thin section bearings of a metre have some 150."""
+"""With fewer balls the rim is not an ellipse between them. Thin section bearings of one metre have about
+150."""
 USUAL_BALLS = 23
-"""Of flexible bearings. Judgement: a usual number of such sets; where it matters the file states its own."""
+"""Number of balls if the design states none. Judgement: usual in flexible bearings."""
 BALL_SHARE = 0.20
-"""Ball's diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
+"""Ball diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
 RACE_SHARE = 0.04
-"""Outer race's thickness at the groove's bottom over the tube's inner radius: some 1.2 mm at 30 mm, read off
-drawings in papers. Not standardised; makers keep it to themselves."""
+"""Thickness of the outer race at the groove over the tube's inner radius: about 1.2 mm at 30 mm, from
+drawings in papers. It is not standardised, and makers do not publish it."""
 DEFLECTION_SHARES = (0.5, 1.5)
-"""Of m(z2 − z1)/2: with less the teeth hardly meet, with more their tips touch the root circle."""
+"""Range of the stroke over m(z2 − z1)/2: with less the teeth hardly meet, with more their tips touch the root
+circle."""
 RACE_SHARES = (0.01, 0.25)
-"""Of the inner radius: balls dent a thinner race, and K moves by more than 2 % with twice as many harmonics;
-a thicker one is no flexible ring."""
+"""Range of the race thickness over the inner radius. Balls dent a thinner race, and K then changes by more
+than 2 % with twice the harmonics; a thicker race does not bend like a ring."""
 SMALLEST_BALL = 0.01
-"""Of the inner radius: so small, even the most balls that are allowed fill a third of their circle."""
+"""Smallest ball diameter over the inner radius: even the largest allowed number of balls then fills only a
+third of their circle."""
 
 
 class WaveGenerator(DesignTable):

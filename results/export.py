@@ -97,9 +97,10 @@ def _write_deck(part: PartModel, folder: Path) -> Path:
 
 
 ENDINGS = {".step": b"END-ISO-10303-21;", ".vtu": b"</VTKFile>"}
-"""How whole files end: CAD's writers say nothing of a full disk."""
+"""Last bytes of a complete file, by suffix. They are checked because the writers of the CAD kernel do not
+report a full disk."""
 STL_HEAD_BYTES, STL_TRIANGLE_BYTES = 84, 50
-"""Of the binary format."""
+"""Sizes in a binary STL file."""
 
 
 class ExportError(ComputationError):
