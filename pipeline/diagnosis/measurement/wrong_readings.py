@@ -83,7 +83,7 @@ def _wrong(
 
 
 def _spikes(table: MeasuredTable) -> np.ndarray:
-    """(n,) torques that no gear felt; each unit by itself."""
+    """(n,) torque readings that did not act on the gear; each unit separately."""
     found = np.zeros(len(table), bool)
     for rows in table.unit_rows():
         torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
