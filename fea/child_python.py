@@ -32,4 +32,4 @@ def end_with(parent: int) -> None:
         return
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before the line above
-        sys.exit("the program that asked for this is gone")
+        sys.exit("the program that started this process has ended")

@@ -21,7 +21,7 @@ class OutOfTimeError(ComputationError):
 
     def __init__(self, limit_s: float) -> None:
         self.limit_s = limit_s
-        super().__init__(f"it would end after the limit of {limit_s:g} s")
+        super().__init__(f"it would take longer than the limit of {limit_s:g} s")
 
 
 class Deadline:

@@ -1,4 +1,4 @@
-"""The circular spline: its rim, how deep its teeth work, and proportions where a design states none."""
+"""The circular spline: its rim, the working depth of its teeth, and assumed proportions."""
 
 from __future__ import annotations
 
@@ -11,22 +11,24 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.share_range import share_faults
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
 
 OUTER_SHARE = 1.35
-"""Outer over pitch diameter: median of one maker's component sets (CSF, sizes 14 to 58: 50, 60, 70, 85, 110,
-135, 170, 195 mm, that is 1.32 to 1.41)."""
+"""Outer diameter over pitch diameter: the median of one maker's component sets (CSF, sizes 14 to 58: 50, 60,
+70, 85, 110, 135, 170, 195 mm, which is 1.32 to 1.41)."""
 THINNEST_RIM = 0.02
-"""Of the pitch radius, outside the root circle: below, it is a foil."""
+"""Smallest rim outside the root circle, as a share of the pitch radius."""
 DEEPEST = 1.34
-"""Of m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into each other."""
+"""Largest working depth over m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into
+each other."""
 SHALLOWEST = 0.1
-"""Of m(z2 − z1)/2: teeth that touch within 13° of the major axis only."""
+"""Smallest working depth over m(z2 − z1)/2: teeth then touch only within 13° of the major axis."""
 
 DEPTH_ROUNDING = 1e-3
-"""Share by which a depth that was written with four digits may pass its end."""
+"""Share by which a depth written with four digits may exceed the limit."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +87,12 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
             f"must be {span(least, LENGTH_mm.high, 4)} mm: the root circle's diameter is "
             f"{2 * _root_radius(design):.4g} mm",
         )
-    depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
-    low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + DEPTH_ROUNDING)
-    if depth is not None and not low <= depth <= high:
-        yield DesignError(
-            "gear.working_depth_mm",
-            depth,
-            f"must be {span(low, high, 4)} mm, {SHALLOWEST:g} to {DEEPEST:g} of "
-            f"m(z2 - z1)/2 = {stroke:.4g} mm",
-        )
+    stroke = gear.centre_distance_mm
+    yield from share_faults(
+        "gear.working_depth_mm",
+        gear.working_depth_mm,
+        (SHALLOWEST, DEEPEST),
+        stroke,
+        f"m(z2 - z1)/2 = {stroke:.4g} mm",
+        DEPTH_ROUNDING,
+    )

@@ -41,7 +41,7 @@ class Material(ElasticMaterial):
         default=None, description="MPa, optional, compared with stress"
     )
     density_kg_per_m3: Annotated[float, within(ranges.DENSITY_kg_per_m3)] = Field(
-        default=STEEL_KG_PER_M3, description="kg/m³, for the mass alone; absent: steel's 7850"
+        default=STEEL_KG_PER_M3, description="kg/m³, for the mass only; default: steel's 7850"
     )
 
     @property
@@ -66,13 +66,13 @@ class Materials(DesignTable):
     """What the parts are made of."""
 
     flexspline: Material
-    shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
+    shaft: Material | None = Field(default=None, description="default: the flexspline's")
     circular_spline: ElasticMaterial | None = Field(
-        default=None, description="of the whole gear; absent: as the flexspline's"
+        default=None, description="of the whole gear; default: the flexspline's"
     )
     bearing: ElasticMaterial | None = Field(
         default=None,
-        description=f"races and balls, of the whole gear; absent: {BEARING_STEEL.name}",
+        description=f"of races and balls in the whole gear; default: {BEARING_STEEL.name}",
     )
 
     @property

@@ -21,20 +21,22 @@ RATED_WHY = (
     "ratio 100"
 )
 SOFTEST_STEEL_GPa = 190.0
-"""Of those gears' steels, at least. A flexspline of titanium, aluminium or plastic is assumed to carry as
-much less as it is softer than that, which bends it to the same shape: with a catalogue's torque a plastic
-gear would turn by six teeth."""
+"""Lower limit of Young's modulus of the steels in those gears. For a softer flexspline (titanium, aluminium,
+plastic) the rated torque is reduced in proportion to E, so that it deforms equally: with a catalogue's torque
+a plastic gear would turn by six teeth."""
 STRONGEST_Nm_per_mm3 = 3.2e-3
-"""The largest of these four, size 20."""
+"""The largest of these four: size 20."""
 UNUSUAL = 3.0
-"""Times that: the four differ by 1.8 among themselves, a slip of the unit makes ten or more."""
+"""Factor above the strongest of them that is taken for a slip: the four differ by a factor of 1.8, a wrong
+unit gives ten or more."""
 LOST_MOTION_SHARE = 0.04
-"""Of rated torque, each way: where lost motion is measured (GB/T 35089-2018; Hrcek et al., Materials 14
-(2021) 5057)."""
+"""Share of rated torque, in each direction, at which lost motion is measured (GB/T 35089-2018; Hrcek et al.,
+Materials 14 (2021) 5057)."""
 LOST_MOTION_TORQUE = f"{percent(LOST_MOTION_SHARE)} of rated torque"
-"""The same in words."""
+"""The same, in words."""
 RATED_SHARES = (1e-3, 1e2)
-"""Of that: plastic gears carry a hundredth. Below, rounding shows in the forces; above, nothing holds."""
+"""Allowed range over that proportion: plastic gears carry a hundredth. Below the range rounding shows in the
+forces; above it no gear carries the load."""
 
 
 def rated_in_proportion(pitch_radius_mm: float) -> float:

@@ -18,19 +18,23 @@ from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
 
 ROOT_TOLERANCE = 0.15
-"""Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""
+"""[modules] Difference of tooth-root radius and ring radius, above which one of the two is taken for a
+slip."""
 WALL_RATIO = (0.005, 0.025)
-"""Usual wall / inner diameter."""
+"""Usual range of wall thickness over inner diameter."""
 SMALLEST_CLEARANCE_um = 0.1
-"""Of flanks and bearings, but for none at all: below what a coordinate measuring machine resolves."""
+"""Smallest usual clearance of flanks and bearings, except 0: a coordinate measuring machine does not resolve
+less."""
 LARGEST_CLEARANCE = 0.1
-"""Of a tooth's thickness: makers aim at none, and worn gears have a few per cent."""
+"""Usual flank clearance over a tooth's thickness, at most: makers aim at none, and worn gears have a few per
+cent."""
 BALL_RATIO = (0.1, 0.35)
-"""Usual ball / inner radius of the tube: flexible bearings in papers have 0.15 to 0.25."""
+"""Usual range of ball diameter over the tube's inner radius: flexible bearings in papers have 0.15 to
+0.25."""
 LENGTH_RATIO = (0.2, 1.4)
-"""Usual length / inner diameter."""
+"""Usual range of length over inner diameter."""
 LEAST_RATIO = 25
-"""z1/(z2 − z1): catalogues begin at 30."""
+"""Smallest usual z1/(z2 − z1): catalogues begin at 30."""
 
 
 def warnings(design: Design) -> tuple[str, ...]:

@@ -32,16 +32,17 @@ from flexspline.geometry.toml_text import TomlTable
 from flexspline.geometry.wave_generator import flexible_bearing
 
 PITCH_RADIUS_PER_SIZE_mm = 1.27
-"""Half of a tenth of an inch."""
+"""Pitch radius per unit of size: half of a tenth of an inch."""
 SIZES = Range(3, 200)
-"""Catalogues go from 3 to 100; twice that is the largest built."""
+"""Catalogues list sizes 3 to 100; the largest gear ever built has twice that."""
 RATIOS = Range(30, 320)
-"""As catalogues; with fewer teeth the rim must bend too far, with more a module is beyond making."""
+"""As in catalogues. With fewer teeth the rim must bend too far; with more, the module is too small to
+make."""
 WALL_SHARE = 0.0123
-"""Of the pitch radius. The tube then buckles at the torque that a catalogue gives for it: its 15 sizes
-ask for 0.0117 to 0.0127, at all ratios alike (docs/whole-gear.md)."""
+"""Wall thickness over pitch radius. The tube then buckles at the torque that a catalogue gives: its 15 sizes
+need 0.0117 to 0.0127, equally at all ratios (docs/whole-gear.md)."""
 LENGTH_DIGITS = 4
-"""Significant ones of a length: closer than any tolerance of ISO 2768-f."""
+"""Significant digits of a length: finer than any tolerance of ISO 2768-f."""
 
 RATED: Location = ("gear", "rated_torque_Nm")
 

@@ -1,4 +1,4 @@
-"""The wave generator's flexible bearing: values of the design file, and proportions for the others."""
+"""The wave generator's flexible bearing: stated values, and assumed proportions for the others."""
 
 from __future__ import annotations
 
@@ -10,30 +10,34 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from flexspline.geometry.assumed import Assumed, taken_from
-from flexspline.geometry.bounds import lengths, span
+from flexspline.geometry.bounds import lengths
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import DesignTable, Length
 from flexspline.geometry.play_limit import ROUNDING_SHARE
+from flexspline.geometry.share_range import share_faults
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
 
 FEWEST_BALLS, MOST_BALLS = 6, 200
-"""With fewer the rim is no ellipse between them; thin section bearings of a metre have some 150."""
+"""With fewer balls the rim is not an ellipse between them. Thin section bearings of one metre have about
+150."""
 USUAL_BALLS = 23
-"""Of flexible bearings. Judgement: a usual number of such sets; where it matters the file states its own."""
+"""Number of balls if the design states none. Judgement: usual in flexible bearings."""
 BALL_SHARE = 0.20
-"""Ball's diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
+"""Ball diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
 RACE_SHARE = 0.04
-"""Outer race's thickness at the groove's bottom over the tube's inner radius: some 1.2 mm at 30 mm, read off
-drawings in papers. Not standardised; makers keep it to themselves."""
+"""Thickness of the outer race at the groove over the tube's inner radius: about 1.2 mm at 30 mm, from
+drawings in papers. It is not standardised, and makers do not publish it."""
 DEFLECTION_SHARES = (0.5, 1.5)
-"""Of m(z2 − z1)/2: with less the teeth hardly meet, with more their tips touch the root circle."""
+"""Range of the stroke over m(z2 − z1)/2: with less the teeth hardly meet, with more their tips touch the root
+circle."""
 RACE_SHARES = (0.01, 0.25)
-"""Of the inner radius: balls dent a thinner race, and K moves by more than 2 % with twice as many harmonics;
-a thicker one is no flexible ring."""
+"""Range of the race thickness over the inner radius. Balls dent a thinner race, and K then changes by more
+than 2 % with twice the harmonics; a thicker race does not bend like a ring."""
 SMALLEST_BALL = 0.01
-"""Of the inner radius: so small, even the most balls that are allowed fill a third of their circle."""
+"""Smallest ball diameter over the inner radius: even the largest allowed number of balls then fills only a
+third of their circle."""
 
 
 class WaveGenerator(DesignTable):
@@ -100,24 +104,21 @@ def most_balls(room: float, diameter: float) -> int:
 def wave_generator_faults(design: Design) -> Iterator[DesignError]:
     """Balls that find no room, a race that does not bend, a stroke that does not mesh."""
     given, radius = design.wave_generator, design.flexspline.inner_radius
-    stroke, w0 = design.gear.centre_distance_mm, given.deflection_mm
-    low, high = (share * stroke for share in DEFLECTION_SHARES)
-    if w0 is not None and not low <= w0 <= high:
-        yield DesignError(
-            "wave_generator.deflection_mm",
-            w0,
-            f"must be {span(low, high, 4)} mm, {DEFLECTION_SHARES[0]:g} to {DEFLECTION_SHARES[1]:g} of "
-            f"m(z2 - z1)/2 = {stroke:.4g} mm",
+    stroke, race = design.gear.centre_distance_mm, given.race_thickness_mm
+    yield from share_faults(
+        "wave_generator.deflection_mm",
+        given.deflection_mm,
+        DEFLECTION_SHARES,
+        stroke,
+        f"m(z2 - z1)/2 = {stroke:.4g} mm",
+    )
+    race_faults = list(
+        share_faults(
+            "wave_generator.race_thickness_mm", race, RACE_SHARES, radius, "the tube's inner radius"
         )
-    race = given.race_thickness_mm
-    thinnest, thickest = (share * radius for share in RACE_SHARES)
-    if race is not None and not thinnest <= race <= thickest:
-        yield DesignError(
-            "wave_generator.race_thickness_mm",
-            race,
-            f"must be {lengths(thinnest, thickest, 4)} mm, {RACE_SHARES[0]:g} to "
-            f"{RACE_SHARES[1]:g} of the tube's inner radius",
-        )
+    )
+    yield from race_faults
+    if race_faults:
         return
     room = radius - (race if race is not None else RACE_SHARE * radius)
     ball = given.ball_diameter_mm

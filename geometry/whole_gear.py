@@ -15,8 +15,8 @@ from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.ranges import MODULE_mm
 
 LARGEST_STROKE = 0.1
-"""Of the tube's inner radius: ratios in catalogues begin at 30, a stroke of 0.033. The model's displacements
-are small: the square of 0.1 is 1 %."""
+"""Largest stroke over the tube's inner radius. Ratios in catalogues begin at 30, which is a stroke of 0.033.
+The model assumes small displacements: the square of 0.1 is 1 %."""
 
 
 def require_whole_gear(design: Design) -> None:

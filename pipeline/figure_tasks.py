@@ -94,9 +94,7 @@ class FigureTasks:
             return figures
         begun()
         tasks = [partial(_then, task, partial(told, n)) for n, task in enumerate(self._tasks)]
-        with beside(self._context.progress, tasks[1:]) as rest:
-            for task in tasks[:1]:
-                task()
+        with beside(self._context.progress, tasks) as rest:
             rest()
         return figures
 

@@ -18,9 +18,10 @@ from flexspline.geometry.part import Part
 from flexspline.geometry.percent import percent
 
 ESTIMATE_WIDTH = 0.02
-"""Of both bodies' bounds of K: 0.1 s each; K itself is within 0.1 % of that of bounds ten times closer."""
+"""Relative width of both bodies' bounds of K, 0.1 s each. K itself agrees within 0.1 % with K from bounds
+that are ten times closer."""
 LEAST_SHARE = 0.002
-"""By which K_e is said to be larger, at least: twice what each K may be off by."""
+"""Smallest excess of K_e that is reported: twice the possible error of each K."""
 LEAST_RING_mm, LEAST_RING_SHARE = 0.1, 0.1
 """Width of a ring of two faces that touch, at least, and as a share of the flange's, of small parts. Each
 ring lies between edges of two parts, and an edge that a drawing calls sharp may be broken by 0.05 mm (ISO
@@ -28,9 +29,9 @@ ring lies between edges of two parts, and an edge that a drawing calls sharp may
 SPLIT_MM = 0.5
 """Of the first segment: so much of it is hollowed, to leave the face under the flange alone."""
 ANY = Material(name="any", youngs_modulus_GPa=1.0, poissons_ratio=0.3)
-"""Both K are proportional to the shear modulus, so their ratio has none."""
+"""Any shear modulus: both K are proportional to it, so their ratio does not depend on it."""
 KEPT = 64
-"""Shafts whose excess is remembered."""
+"""Shafts whose excess is kept in memory."""
 
 
 def held_beyond_flange(design: Design) -> bool:

@@ -1,4 +1,4 @@
-"""A `solver.edge_length_mm` that fits, where that of the design asks for too many elements."""
+"""A `solver.edge_length_mm` that is possible, if the design's value leads to too many elements."""
 
 from __future__ import annotations
 

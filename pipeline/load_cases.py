@@ -79,7 +79,7 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
             bodies = bodies_if_any(flexspline, asked.bodies)
             if bodies is None:
                 return asked.with_holes(flexspline)
-            return _of_holed(flexspline, bodies, asked.with_holes)
+            return _enclosed_rim(flexspline, bodies, asked.with_holes)
     if asked.solid is None:
         raise ComputationError(
             f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
@@ -91,10 +91,11 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     return solid
 
 
-def _of_holed(
+def _enclosed_rim(
     flexspline: PartModel, bodies: TwoBodies, with_holes: Callable[[PartModel], Stiffness]
 ) -> Stiffness:
-    """The enclosure; where it is too wide K by torsion within it; at last what the holes change, solved."""
+    """K_b between two bodies of revolution. If they are too far apart: K_b from torsion, within them; if that
+    is not enough, the solved change by the holes."""
     found, tolerance = enclosure_of(flexspline, bodies), flexspline.tolerance
     if found.half_width > tolerance:
         try:

@@ -1,4 +1,4 @@
-"""What is said of a solid part's meshes: how long a large one takes, and what tells K closer."""
+"""Messages about a solid part's meshes: the time for a large one, and how to tighten the bounds of K."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ def long_solve(model: PartModel, elements: int) -> str:
 
 
 def remedy(model: PartModel) -> str:
-    """What tells K closer, where the last mesh does not meet the tolerance."""
+    """How to tighten the bounds of K if the last mesh does not meet the tolerance."""
     part, by_name = model.part, model.context.design.solver.model == "solid"
     if by_name and not part.cuts_meet:
-        alone = f", and only what its {part.cuts} change on such meshes" if part.cuts else ""
+        alone = f", and on such meshes only the effect of its {part.cuts}" if part.cuts else ""
         return (
-            f'solver.model = "auto" tells K closer: it solves the {part.name} on a meridian{alone}'
+            'solver.model = "auto" gives tighter bounds of K: it solves the '
+            f"{part.name} on a meridian{alone}"
         )
     if model.states_edges:
         return "without solver.edge_length_mm there is time for more meshes"

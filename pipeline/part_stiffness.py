@@ -17,7 +17,7 @@ from flexspline.pipeline.enclosed_part import bodies_if_any, bodies_of, enclosur
 from flexspline.pipeline.enclosure import answered_within, check_against, overlap, proven_by
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
-from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
+from flexspline.pipeline.rim_size import most_in_sector
 from flexspline.pipeline.solid_torsion import (
     SECOND_SECONDS,
     TurnedField,
@@ -129,13 +129,13 @@ def turned_field(model: PartModel, twisted: TwistedPart) -> TurnedField:
 
 
 def rim_mesh(model: PartModel) -> MeshedPart:
-    """A flexspline's sector for lobes and ellipse: the torsion's, or a coarser one (`most_for_lobes`).
+    """A flexspline's sector for lobes and ellipse: the torsion's, or a coarser one (`most_in_sector`).
 
     Raises
     ------
     ComputationError, MemoryError : as `twisted_part`.
     """
-    meshed, most = twisted_part(model).rim, most_for_lobes(model) / copies_in_rim(model)
+    meshed, most = twisted_part(model).rim, most_in_sector(model)
     if meshed.mesh.elements <= most or not model.is_swept:
         return meshed
     meshes = PartMeshes(model)

@@ -16,7 +16,7 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
-from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
+from flexspline.pipeline.rim_size import copies_in_rim, most_in_sector
 from flexspline.pipeline.solid_torsion import SOLID_SECONDS
 
 MOST_LOBE_ELEMENTS = 100_000
@@ -119,8 +119,8 @@ def _numbered_mesh(flexspline: PartModel, number: int) -> TetMesh:
 
 
 def first_rim_spec(flexspline: PartModel) -> MeshSpec:
-    """Of a first mesh for the rim, of `most_for_lobes` where it may be coarser."""
-    return PartMeshes(flexspline).coarsened(most_for_lobes(flexspline) / copies_in_rim(flexspline))
+    """Of a first mesh for the rim, of `most_in_sector` where it may be coarser."""
+    return PartMeshes(flexspline).coarsened(most_in_sector(flexspline))
 
 
 def swept_rim(flexspline: PartModel, spec: MeshSpec, finer: Finer | None = None) -> TetMesh:

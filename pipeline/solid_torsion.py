@@ -37,7 +37,7 @@ from flexspline.pipeline.part_meshes import (
     PartMeshes,
 )
 from flexspline.pipeline.parts import PartModel
-from flexspline.pipeline.rim_size import copies_in_rim, most_for_lobes
+from flexspline.pipeline.rim_size import fits_rim
 
 SOLID_SECONDS = 30.0
 """Of all meshes of a part after the first: with that one and the rest of a command, a minute. Of 100 random
@@ -102,7 +102,7 @@ class TurnedField:
 class TwistedPart:
     """A solid part's stiffness; its field for a turn of 1 rad, where K needed it (else `turned_field`).
 
-    `rim` is the finest of its meshes that, unfolded for the lobe cases, keeps within `most_for_lobes`.
+    `rim` is the finest of its meshes that is small enough for the lobe cases (`fits_rim`).
     `without_fillets`: a shaft's meshes have sharp corners in place of its fillets.
     """
 
@@ -286,8 +286,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         Deadline(seconds),
     )
     meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
-    sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]
-    rim = max(1, sum(size <= most_for_lobes(model) for size in sizes)) - 1
+    rim = max(1, sum(fits_rim(model, m.mesh.elements) for m in meshed)) - 1
     turned = None if found.turned is None else TurnedField.of(found.turned)
     short = found.stiffness.shortfall
     if short:

@@ -39,7 +39,7 @@ def write_result(folder: Path, record: Record) -> str | None:
         more = f" and {len(lacking) - MOST_NAMED} more" if len(lacking) > MOST_NAMED else ""
         names = ", ".join(lacking[:MOST_NAMED])
         return (
-            f"the {RESULT} that was here has figures that this command does not compute"
+            f"the earlier {RESULT} has figures that this command does not compute"
             f" ({names}{more}); it is kept as {PREVIOUS}"
         )
     if previous and previous.keys() <= record.keys():

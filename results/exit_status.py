@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 FAILED = 1
-"""Of a computation that failed, or a disk that is full; Python's own of an error that nobody caught."""
+"""The computation failed, or the disk is full. Python uses the same status for an uncaught error."""
 REFUSED = 2
-"""Of input that is wrong, and of a command that is used wrongly."""
+"""The input is wrong, or the command is used wrongly."""
 INTERRUPTED = 130
-"""By Ctrl-C: 128 + SIGINT, 2."""
+"""Ended by Ctrl-C: 128 + SIGINT, 2."""
 NOBODY_READS = 141
-"""Where the reader of a pipe has gone (``| head -1``), as of a tool that SIGPIPE ended. Nothing is said."""
+"""The reader of the pipe has ended (``| head -1``): the same status as of a tool that SIGPIPE ended. No
+message."""
 TERMINATED = 143
-"""By `kill`, or a job scheduler: 128 + SIGTERM, 15."""
+"""Ended by `kill` or by a job scheduler: 128 + SIGTERM, 15."""

@@ -97,9 +97,10 @@ def _write_deck(part: PartModel, folder: Path) -> Path:
 
 
 ENDINGS = {".step": b"END-ISO-10303-21;", ".vtu": b"</VTKFile>"}
-"""How whole files end: CAD's writers say nothing of a full disk."""
+"""Last bytes of a complete file, by suffix. They are checked because the writers of the CAD kernel do not
+report a full disk."""
 STL_HEAD_BYTES, STL_TRIANGLE_BYTES = 84, 50
-"""Of the binary format."""
+"""Sizes in a binary STL file."""
 
 
 class ExportError(ComputationError):
@@ -120,7 +121,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
         data = made.read_bytes() if made.exists() else b""
     if not _is_whole(data, path.suffix):
         raise ExportError(
-            f"{path.name} was not written whole; is the folder for temporary files (TMPDIR), "
+            f"{path.name} was not written completely; is the folder for temporary files (TMPDIR), "
             f"{temporary_folder()}, full, or the size of files limited (ulimit -f)?"
         )
     write_bytes(path, data)

@@ -9,7 +9,7 @@ from typing import Literal
 from flexspline.geometry.part_name import PART_NAMES
 
 RESULT = "result.json"
-"""Of `run`, `stiffness` and `backlash`."""
+"""Record of `run`, `stiffness` and `backlash`."""
 PREVIOUS = "result.previous.json"
 """An earlier result.json with figures that the present one lacks."""
 REPORT = "report"
@@ -30,13 +30,14 @@ CHARTS_OF: Mapping[ChartSection, tuple[str, ...]] = {
 `figures/NAME.py` draws the one called NAME, and has its caption."""
 CHARTS = tuple(chain.from_iterable(CHARTS_OF.values()))
 FORMATS = ("msh", "med", "bdf", "inp", "vtu", "xdmf")
-"""Of `export --format`, by suffix."""
+"""File suffixes that `export --format` accepts."""
 GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
-"""The folder may hold the result.json of a run of the same design."""
+"""Separate names, because the folder may hold the result.json of a run of the same design."""
 DIAGNOSIS = "diagnosis"
-"""Of the record and the reports: the folder may hold `report.pdf` of a run of the same design."""
+"""Name of the record and the reports of a diagnosis: the folder may hold `report.pdf` of a run of the same
+design."""
 EXTENDED_MODEL, PREVIOUS_MODEL = "extended_model.toml", "extended_model.previous.toml"
-"""That of the measurement, and that of another one whose diagnosis was there."""
+"""The model of this measurement, and the model of an earlier one whose diagnosis was in the folder."""
 PREDICTION = "prediction.csv"
 BEST_DESIGN, BEST_STRESS = "best.toml", "best_stress.png"
 SENSITIVITY = "sensitivity.json"

@@ -20,6 +20,8 @@ from opengl import why_no_pictures
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.schema import json_schema
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.results.file_names import CHARTS, RENDERED
 
 ROOT = Path(__file__).parents[1]
@@ -120,6 +122,12 @@ def test_the_contract_names_every_command_and_every_key_of_a_design() -> None:
     assert len(keys) > 60
     named = set(re.findall(r"\w+", text))
     assert keys <= named, keys - named
+
+
+def test_the_contract_names_every_cause() -> None:
+    text = CONTRACT.read_text(encoding="utf-8")
+    for name in (*known_causes(), YOUNGS_MODULUS, LOAD_ZONE, GEOMETRY):
+        assert f"\n| `{name}" in text, name
 
 
 def listed_keys(record: str) -> list[str]:

@@ -186,7 +186,7 @@ class HarmonicModel:
         count = self.space.count
         axis = np.flatnonzero(self.space.places[:, 0] < SAME_mm)
         if wave.n == 1 and len(axis):
-            raise HarmonicError("harmonic 1 of a body with an axis is not provided for")
+            raise HarmonicError("harmonic 1 of a body that reaches its axis is not implemented")
         mask, value = np.zeros((count, 3), bool), np.zeros((count, 3))
         idle = [Fixed(np.arange(count), c) for c in wave.idle]
         for f in [*fixed, *idle, *(Fixed(axis, c) for c in wave.zero_on_axis)]:

@@ -26,13 +26,13 @@ from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 TORQUE_SHARE = 0.05
 """Of the torque at which no tooth is left."""
 MOST_DOUBLINGS = 14
-"""Each way from the torque where the search begins: what is 16 000 times off is no gear."""
+"""Most doublings or halvings of the torque at which the search begins: a factor of 16 000 either way."""
 BENT_MODULES = pi / 4
-"""Modules: half a tooth's thickness at the pitch circle."""
+"""[modules] Half the thickness of a tooth at the pitch circle."""
 THROUGH = ADDENDUM + DEDENDUM
-"""Modules beyond full depth: a tooth's height."""
+"""[modules] The height of a tooth. A tooth pressed deeper than this beyond full depth has crossed another."""
 STAND_OFF_STROKES = 10.0
-"""Strokes that a tooth which is out stands off: it meets nothing any more."""
+"""[strokes] Gap given to a tooth that is out of engagement, so that it meets nothing."""
 
 
 @dataclass(frozen=True)

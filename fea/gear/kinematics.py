@@ -19,7 +19,8 @@ from flexspline.geometry.circular_spline import DEEPEST
 Flanks = Literal["plain", "relieved", "conjugate", "drawn"]
 Face = Literal["relieved", "straight"]
 GAP_STEPS = 1000
-"""Of the search for a gap's largest value: a parabola's is met to 1e-6 of it."""
+"""Steps in the search for the largest value of a gap; the top of a parabola is found to 1e-6 of its
+height."""
 
 
 @dataclass(frozen=True)

@@ -26,14 +26,14 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from flexspline.fea.types import Elastic
 
 ACROSS, UP = 8, 24
-"""Elements through the tooth and along it; twice as many move its compliance by 0.2 %."""
+"""Elements through the tooth and along its height; twice as many change its compliance by 0.2 %."""
 LOAD_SPREAD_SHARE = 0.15
 """Of lever, tip or thickness, the least: so far the load is spread about the pitch point. Half of it moves
 the compliance by 0.3 %."""
 PUSH = LinearForm(
     lambda v, w: -np.exp(-(((w.x[1] - w.lever) / w.spread) ** 2)) * (w.c * v[0] + w.s * v[1])
 )
-"""Normal to the flank on the side of x > 0."""
+"""Direction of the force: normal to the flank on the side x > 0."""
 TILT, SHIFT, SHEAR_SHARE = 16.67 / pi, 1.534, 2.4
 """Cornell's, of a tooth's root in an elastic half plane in plane strain (the paper above): its tilt under the
 bending moment, its shift under the shear force, and what the force along the tooth adds to that."""

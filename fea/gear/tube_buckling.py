@@ -16,16 +16,16 @@ from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.shapes import Flexspline
 
 LOWER_EDGE_OF_TESTS = 0.67
-"""Measured over theory: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
+"""Buckling torque in tests over theory, lower bound: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
 YIELD_SHEAR_OVER_E = 0.01
-"""Shear stress at yield over Young's modulus, at most: steels up to 0.006, plastics of gears near this. A
-tube of 1.2 mm length and 0.4 mm wall would buckle at 0.5."""
+"""Largest shear stress at yield over Young's modulus: steels reach 0.006, plastics about this value. Without
+this limit a tube of 1.2 mm length and 0.4 mm wall would buckle at 0.5."""
 EndFixity = Literal["hinged", "clamped"]
 TERMS: dict[EndFixity, tuple[float, float, float]] = {
     "hinged": (1.27, 9.64, 0.466),
     "clamped": (-2.39, 96.9, 0.605),
 }
-"""a, b, c of a + √(b + c H^1.5)."""
+"""Coefficients a, b, c of a + √(b + c H^1.5)."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from flexspline.fea.solid.quadratic import (
     straightened_too,
     with_middles,
 )
-from flexspline.fea.solid.snap import snap_to_surfaces
+from flexspline.fea.solid.snap import middles_on_surfaces
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.surfaces import Surface
 
@@ -79,11 +79,8 @@ def _curved(
     Middle nodes follow the angle, those of the boundary lie on its surfaces. Within the part edges are
     straight where elements would be bent too far, so that those of its surface may stay.
     """
-    n = len(points)
     edges, cells, facets = with_middles(points, mesh.tets, mesh.facets)
-    nodes = np.vstack([points, cartesian(middles(polar(points)[edges]))])
-    longest = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).max())
-    nodes = snap_to_surfaces(nodes, facets, mesh.facet_surface, surfaces, longest)
-    nodes[:n] = points
+    turned = cartesian(middles(polar(points)[edges]))
+    nodes = middles_on_surfaces(points, turned, edges, facets, mesh.facet_surface, surfaces)
     nodes, ratio = straightened_inside(nodes, cells, edges, facets)
     return nodes, ratio, edges, cells, facets

@@ -45,6 +45,25 @@ def snap_to_surfaces(
     return out
 
 
+def middles_on_surfaces(
+    corners: np.ndarray,
+    middles: np.ndarray,
+    edges: np.ndarray,
+    facets: np.ndarray,
+    facet_surface: np.ndarray,
+    surfaces: Sequence[Surface],
+) -> np.ndarray:
+    """Nodes (n, 3) mm: `corners` as they are, then `middles` of `edges`, those of `facets` on their surfaces.
+
+    A middle moves by the longest edge at most.
+    """
+    longest = float(np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max())
+    nodes = np.vstack([corners, middles])
+    nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
+    nodes[: len(corners)] = corners
+    return nodes
+
+
 def snap_middles(
     nodes: np.ndarray,
     edges: np.ndarray,

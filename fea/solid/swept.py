@@ -28,7 +28,7 @@ from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.slot import SlottedTube
-from flexspline.fea.solid.snap import snap_to_surfaces
+from flexspline.fea.solid.snap import middles_on_surfaces
 from flexspline.fea.solid.sweeps import bent_block, can_be_swept, goes_about_axis, half_holes
 from flexspline.fea.solid.swept_sizing import (
     Finer,
@@ -158,10 +158,8 @@ def _curved(
     surfaces = part_surfaces(part, sector_deg)
     facet_surface = surfaces_of(corners, faces, surfaces)
     edges, cells, facets = with_middles(corners, tets, faces)
-    nodes = np.vstack([corners, cartesian(bend(middles(polar[edges])))])
-    longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
-    nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
-    nodes[: len(corners)] = corners
+    turned = cartesian(bend(middles(polar[edges])))
+    nodes = middles_on_surfaces(corners, turned, edges, facets, facet_surface, surfaces)
     nodes = straightened(nodes, cells, edges, facets)
     patches = patches_of(facet_surface, surfaces)
     mesh = BisectableMesh(

@@ -1,4 +1,4 @@
-"""How a simulated torque-angle curve leaves its straight line."""
+"""Deviation of a simulated torque-angle curve from a straight line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Torques that a plan asks for: none beyond the rated torque that a design states, but a record's own."""
+"""Torques of a recommended measurement: at most the rated torque, or the record's own largest torque."""
 
 from __future__ import annotations
 

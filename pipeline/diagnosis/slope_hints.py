@@ -1,4 +1,4 @@
-"""What a slope far from the simulated one may come from besides the gear: a unit, or a complete gear."""
+"""Likely reasons for a slope far from the simulated one: a wrong unit, or a complete gear on the rig."""
 
 from __future__ import annotations
 

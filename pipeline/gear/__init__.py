@@ -1,1 +1,1 @@
-"""The whole gear in contact: torque-angle curve, chain, terms, limits, and what is to be noted."""
+"""The whole gear in contact: torque-angle curve, series chain, terms, torque limits, notes."""

@@ -51,22 +51,25 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
-"""Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in sizes 14 to 25."""
+"""T1 and T2 over rated torque. In makers' catalogues T1 is 0.13 to 0.20 and T2 0.39 to 0.69 of rated torque
+(sizes 14 to 25)."""
 BELOW_T1 = (0.001, 0.005, 0.01, 0.015, 0.025, LOST_MOTION_SHARE, 0.05, 0.065, 0.09, 0.12)
-"""Torques over rated torque. Teeth come into contact there, the curve bends, and the lost motion is read."""
+"""Torques over rated torque, up to T1. In this range teeth come into contact and the curve bends; the lost
+motion is read here."""
 BELOW_T2 = (T1_SHARE, 0.2, 0.25, 0.31, 0.37, 0.43)
 """Torques over rated torque from T1 up to T2, the range of K2."""
 LOADING = (*BELOW_T1, *BELOW_T2, T2_SHARE, 0.58, 0.66, 0.74, 0.83, 0.91, 1.0)
-"""Torques that are computed, of rated torque; a chord "from 0" begins at the first. Straight lines between
-them are off by less than 0.2 % of the wind-up on the gears tried: further teeth meet all along the curve."""
+"""All torques that are computed, over rated torque; a chord "from 0" begins at the first. Straight lines
+between them deviate by less than 0.2 % of the wind-up on the gears tried, because further teeth come into
+contact along the whole curve."""
 LAWS = (
     Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),
     Assumed("T2 over rated torque", T2_SHARE, "makers': 0.39 to 0.69"),
     Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
 )
-"""What no key of the design file states."""
+"""Assumptions that no key of the design file states."""
 CARRYING_SHARE = 1e-3
-"""Of the largest force: a tooth below it is not counted as in contact."""
+"""A tooth with less than this share of the largest force does not count as in contact."""
 
 
 @dataclass(frozen=True)

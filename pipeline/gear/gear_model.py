@@ -29,27 +29,30 @@ from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
 from flexspline.geometry.whole_gear import require_whole_gear
 
 LAST_HARMONIC = 48
-"""96 move K1 to K3 of xb1-40 by 0.2 %, 144 by 0.3 %."""
+"""Highest Fourier harmonic. With 96, K1 to K3 of xb1-40 change by 0.2 %; with 144 by 0.3 %."""
 PLACES = 5
-"""Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %. On a rigid plug, whose edge alone carries, 9 are 5 %
-softer, as a three-dimensional model is (docs/whole-gear.md)."""
+"""Contact places along the seat. With 7, K changes by 0.15 %; with 3, K1 changes by 2 %. On a rigid plug, of
+which only the edge carries load, 9 are 5 % softer, like a three-dimensional model (docs/whole-gear.md)."""
 FACE_PLACES = {"relieved": 5, "straight": 9}
-"""Along a tooth, closer towards its ends, which touch first. Relieved: 9 move K by 0.2 %, 3 move K1 of the
-hat by 5 %. Straight: 13 move K by 0.4 %."""
+"""Contact places along a tooth, closer together at its ends, which touch first. Relieved teeth: with 9, K
+changes by 0.2 %; with 3, K1 of the hat by 5 %. Straight teeth: with 13, K changes by 0.4 %."""
 FLANK_POINTS = 65
-"""Of a drawn flank; a chord's error is the flank's curvature over 65² of its length, below 0.01 µm."""
+"""Points on a drawn flank; the error of a chord is then below 0.01 µm."""
 MOST_STATIONS = 128
-"""Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K by 0.6 %."""
+"""Most teeth that are modelled in half a turn; with more teeth, each modelled tooth represents several. 50
+for 100 teeth change K by 0.6 %."""
 CONFORMITY = 0.52
-"""Groove radius over ball diameter, usual in deep groove bearings (Harris and Kotzalas, chapter 2)."""
+"""Groove radius over ball diameter, as usual in deep groove bearings (Harris and Kotzalas, chapter 2)."""
 GROOVE_SHARE = 0.3
-"""Width on which a ball presses on its race, over its diameter: the contact spreads through the race. Half
-of it moves K by up to 0.5 %."""
+"""Width on which a ball loads its race, over the diameter of the ball: the load spreads through the race.
+With half of it K changes by up to 0.5 %."""
 
 KEPT_BODIES = 64
-"""Condensed bodies remembered, 10 kB each: who changes the bearing need not condense the flexspline again."""
+"""Condensed bodies kept in memory, 10 kB each: a change of the bearing does not need a new condensation of
+the flexspline."""
 LEAST_LEVER = 0.2
-"""Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
+"""[modules] Smallest distance from the root to the pitch circle; on rings that reach farther out, the tooth
+is a stub of this length."""
 
 
 def gear_model(

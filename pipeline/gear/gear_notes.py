@@ -38,27 +38,31 @@ from flexspline.pipeline.gear.gear_remarks import (
 from flexspline.pipeline.gear.gear_terms import PlayEffect
 
 LOW_RIM = 0.05
-"""Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
+"""Share of the stroke. If the rim stands off by more, the clearance of teeth off the major axis decreases."""
 AT_THE_END = 0.5
-"""Of the largest tooth force: a pair at the end of the working depth that carries more decides much."""
+"""Share of the largest tooth force. If the last pair within the working depth carries more, a note says
+so."""
 LEAST_RELIEF = 1e-3
-"""mm: what is less is no change of a flank's shape."""
+"""[mm] A smaller relief is no change of the flank's shape."""
 LEAST_OVERLAP = 1e-6
-"""mm: rounding."""
+"""[mm] A smaller overlap is rounding."""
 LOW_RATIO = 45
-"""Below 50, where catalogues and the model agree, and above 30, where they do not."""
+"""Ratio below which a note says that the model is too stiff: catalogues agree with the model at 50, but not
+at 30."""
 BEYOND_RATED = 5.0
-"""Times rated torque: more than any catalogue's peak torque, 2 to 4.5 times (HD, CSF)."""
+"""Load torque over rated torque, above which a warning is given. Peak torques in catalogues are 2 to 4.5
+times the rated torque (HD, CSF)."""
 
 
 LEAST_ANGLE = 0.1
-"""arcsec: what is less is rounding of the equilibrium."""
+"""[arcsec] A smaller angle is rounding of the equilibrium."""
 SAME_TORQUE = 0.01
-"""A difference of less is rounding of a design file: `init` writes three digits."""
+"""Relative difference of two torques that is rounding of the design file: `init` writes three digits."""
 LEAST_FALL = 0.02
-"""Stations along a tooth move K1 by 2 % (`gear_model`): a smaller fall is not known."""
+"""Smallest fall of the stiffness that is reported: the number of places along a tooth changes K1 by up to 2 %
+(`gear_model`)."""
 ACT_TOGETHER = 0.2
-"""Of the play's own effect: a smaller difference of the two orders is not worth a note."""
+"""Share of the play's own effect. If the order of removal changes the effect by less, no note is given."""
 
 
 def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:

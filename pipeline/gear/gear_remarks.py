@@ -72,7 +72,7 @@ class EarlyEnd:
 GearWarning = (
     PressingFlanks | CuttingFlanks | LoadBeyondRated | EarlyEnd | Literal["play_closes_gap"]
 )
-"""What makes it a gear that was not intended; that more play makes the free angle smaller."""
+"""Reasons why a gear is not the intended one; the plain text: more play makes the free angle smaller."""
 
 
 @dataclass(frozen=True)
@@ -161,9 +161,9 @@ PlainGearNote = Literal[
     "tube_yields_first",
     "tube_buckles_first",
 ]
-"""Those without figures: play makes the free angle smaller as the stroke is not full; the gear ratchets at no
-torque, or the torque at which it does is an upper limit; the tube yields before it buckles, or buckles before
-the gear ratchets."""
+"""Notes without figures: play reduces the free angle because the stroke is not full; the gear ratchets at no
+torque, or its ratcheting torque is an upper limit; the tube yields before it buckles, or buckles before the
+gear ratchets."""
 
 GearNote = (
     HalvedBalls
@@ -178,4 +178,4 @@ GearNote = (
     | BucklingTube
     | PlainGearNote
 )
-"""What was simplified, and how figures are to be read."""
+"""Simplifications, and how to read the figures."""

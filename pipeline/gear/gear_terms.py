@@ -11,16 +11,16 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear.gear_chain import Chain
 
 SMALL = 1e-3
-"""Of load or rated torque, the smaller: it turns the gear through its gaps, and hardly winds it up."""
+"""Share of the smaller of load torque and rated torque: enough to close all gaps, with almost no wind-up."""
 ARCSEC_DIGITS = 6
-"""Of an arcsec: an equilibrium is found to some 1e-9, whichever the state that it is begun from."""
+"""Decimals of an angle in arcsec: an equilibrium is found to about 1e-9 from any initial state."""
 TIGHT = "tight_gear"
-"""The gap that is left without any clearance, for which the sum has no term."""
+"""Name of the gap that remains without any clearance; the backlash sum has no term for it."""
 FREE_ANGLE_TERMS = ("flank_clearance", "bearing_play", TIGHT)
 """Terms that make up the free angle."""
 LAST_SHARE = 0.1
-"""Of the play: small enough that its sign is that of the slope at the play that is drawn, and a tenth of the
-effect is still far above an equilibrium's rounding."""
+"""Share of the play that is removed last, to get the slope at the drawn play. It is small, but its effect is
+still far above the rounding of an equilibrium."""
 
 
 def small_torque(load_Nm: float, rated_Nm: float) -> float:

@@ -60,15 +60,15 @@ SHOWS_STRUCTURE = {
     "torque_amplitude": f"{WITHIN}, each twice",
     "torque_rate": BOTH_RATES,
     "angle_arcsec": "turn the encoder's housing on the output, or begin at another output angle, and "
-    "repeat the sweep: an error of the encoder then comes at other torques, an effect of the gear at the "
-    "same ones",
-    "direction": "approach each of several torques from below and from above, twice each, and rest there: "
-    "friction leaves a difference that stays, a lag one that goes",
+    "repeat the sweep: an error of the encoder then appears at other torques, an effect of the gear at the "
+    "same torques",
+    "direction": "approach each of several torques from below and from above, twice each, and hold it: a "
+    "difference from friction remains, a difference from a lag decays",
     "temperature_C": OTHER_ORDER,
     "input_angle_deg": POSITIONS,
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
-    "record: the pause changes an effect of time, and not an effect of the number of cycles",
+    "record: the pause changes an effect of time, but not an effect of the number of cycles",
     "cycle": "if the gear was clamped again between cycles, give each clamp a name in a column unit and "
     f"diagnose again; else {FURTHER_CYCLES}, touching nothing",
     "unit": "measure the units again in another order, each clamped again",

@@ -109,7 +109,7 @@ def calibrated_sentences(
         titles = joined((title_of(c.id, c.magnitude) for c in elastic), "and")
         said += f" The measured slope is this compliance and the effect of: {titles}."
     if calibration.gap_arcsec.value < 0:
-        said += " No gap is negative: this model is not that of the record, or a reading is wrong."
+        said += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
     if outcome.unexplained:
         said += " An effect is unexplained; it may have changed them by more than the stated ±."
     return said
@@ -131,7 +131,7 @@ def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
         f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the slope of a straight line "
         f"through this record is {slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, "
-        "and what it differs by counts as an effect)"
+        "and the difference counts as an effect)"
     )
 
 
@@ -183,7 +183,7 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
     found.append(
         f"{rows_used(prepared)}{' rows' * (averaging is None)} were used for identification"
     )
-    others = [
+    others = ", ".join(
         f"{grouped(count, 0)} {words}"
         for count, words in (
             (counts.turning, f"{AT_REVERSALS} of torque"),
@@ -191,11 +191,15 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
             (counts.outliers, f"isolated outlier{'s' * (counts.outliers != 1)}"),
         )
         if count
-    ]
-    found.append(
-        f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)} (backlash crossing) "
-        "were not used for identification" + (f"; nor were {', '.join(others)}" if others else "")
     )
+    if counts.crossing:
+        crossing = f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)}"
+        found.append(
+            f"{crossing} (backlash crossing) were not used for identification"
+            + (f"; nor were {others}" if others else "")
+        )
+    elif others:
+        found.append(f"{what} not used for identification: {others}")
     return found
 
 

@@ -81,7 +81,8 @@ def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
         return tuple(said)
     best = found.fitted[0]
     said = [
-        f"{_value(best)} explains the difference from the gear's curve, all else as drawn{_gain(found)}"
+        f"{_value(best)} explains the difference from the gear's curve, with all other inputs as drawn"
+        f"{_gain(found)}"
     ]
     if found.rivals:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)

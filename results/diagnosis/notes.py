@@ -37,8 +37,8 @@ LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 NOTHING_SHARE = 0.01
 """Of the simulated bend: a record that has less of it has none."""
 NOT_SOUGHT = (
-    "no input of the gear was sought that explains the rest: this needs one unit, loaded and unloaded at "
-    "both signs of torque, at three torques at least"
+    "the gear's inputs were not searched for the cause of the difference: this needs one unit, loaded and "
+    "unloaded at both signs of torque, at three torques at least"
 )
 
 
@@ -79,7 +79,7 @@ def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
     part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
     said = f"; of this bend {part} is in this record"
     if HARDENING in (c.id for c in causes):
-        said += f". What else bends its curve is counted as {title_of(HARDENING)}"
+        said += f". Other curvature is counted as {title_of(HARDENING)}"
     return said
 
 

@@ -162,7 +162,7 @@ CHART = Chart(
     write=write_torque_angle,
     arguments=_of_run,
     caption=lambda content: (
-        "The torque–angle line of the model. Within the gap the output lies anywhere."
+        "The torque–angle line of the model. Within the gap the angle is not determined."
     ),
     width_pct=54,
 )

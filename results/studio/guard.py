@@ -1,4 +1,4 @@
-"""Who may talk to the page's server: the right host name, the right origin, and the token of the address.
+"""Access to the page's server: the right host name, the right origin, and the token of the address.
 
 Every request needs the token: other users of this machine reach 127.0.0.1 as well. Its first use hands
 the browser a cookie, so that the token leaves the address bar. On this machine only, the names of this

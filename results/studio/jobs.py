@@ -1,4 +1,4 @@
-"""Long work for a tab: the `flexspline` commands themselves, each in a process that can be stopped.
+"""Jobs of a browser tab: `flexspline` commands, each in a process that can be stopped.
 
 A job has a folder of its own under the system's temporary folder. Names in it are fixed here; nothing
 that a browser sends becomes a path.

@@ -1,4 +1,4 @@
-"""What a worker can be asked about a design, by name; runs in the worker's process."""
+"""Questions about a design that a worker answers, by name; they run in the worker's process."""
 
 from __future__ import annotations
 

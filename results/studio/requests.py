@@ -1,4 +1,4 @@
-"""What a tab may say over its connection: a design it wants figures of, a job to start, a job to stop."""
+"""Messages from a tab: a design to compute, a job to start, a job to stop."""
 
 from __future__ import annotations
 

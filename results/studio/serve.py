@@ -1,4 +1,4 @@
-"""Listening: the address, the browser, and an orderly end."""
+"""Starts and ends the page's server: address, port, browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one tab asks for beyond the fast answers: jobs, their files, and the messages to and fro."""
+"""A tab's session: its jobs, their files, and the messages in both directions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An outline with no more edges than the eye makes out: the page draws each of them 144 times."""
+"""Simplifies an outline to its visible edges, because the page draws each of them 144 times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One browser tab: its newest design, what is known of it, and what is asked next.
+"""One browser tab: its newest design, the results so far, and the next question.
 
 Three lanes run side by side, each with a worker of its own: the stiffnesses that follow a slider, the
 picture, and what takes longer. A lane drops what a newer design has made stale, so the newest wins. No

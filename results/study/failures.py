@@ -93,14 +93,14 @@ def contradiction(result: StudyResult) -> str:
 
 
 def nothing_built(result: StudyResult) -> str:
-    """Where no design has the figures asked for: the commonest cause; "" where one has."""
+    """Where no design has the figures asked for: the most frequent cause; "" where one has."""
     if result.built or not result.rows:
         return ""
     told = f"none of {len(result.rows)} designs could be built and solved"
     found = causes(result)
     if not found:
         return told
-    return f"{told}; commonest cause ({found[0].designs} ×): {found[0].name}: {found[0].said}"
+    return f"{told}; most frequent cause ({found[0].designs} ×): {found[0].name}: {found[0].said}"
 
 
 def untold(found: list[FailureReason]) -> str:

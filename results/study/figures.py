@@ -1,4 +1,4 @@
-"""The pictures of a study: which there are; Pareto front, parallel coordinates, convergence."""
+"""The pictures of a study: Pareto front, parallel coordinates, convergence, and when each is drawn."""
 
 from __future__ import annotations
 

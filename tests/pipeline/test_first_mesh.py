@@ -204,6 +204,13 @@ def test_the_rims_mesh_keeps_within_its_elements(
     assert part_stiffness.rim_mesh(cup).mesh.elements < usual
 
 
+def test_any_mesh_fits_of_a_shaft_whose_sector_is_larger_than_the_ellipses(tmp_path: Path) -> None:
+    keyed = load_design(EXAMPLES / "keyed-shaft.toml")
+    shaft = AnalysisContext(keyed, Cache(tmp_path), Progress()).part("shaft")
+    assert rim_size.copies_in_rim(shaft) == 0
+    assert rim_size.fits_rim(shaft, 10**6)
+
+
 def test_a_sweep_that_fails_a_check_is_tried_once_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

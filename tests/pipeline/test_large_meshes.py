@@ -30,7 +30,7 @@ def test_what_tells_k_closer_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
         found = part_stiffness.part_stiffness(shaft)
         half[model], words[model] = found.half_width, found.shortfall.words
     assert half["auto"] < half["solid"] / 3
-    assert 'solver.model = "auto" tells K closer' in words["solid"]
+    assert 'solver.model = "auto" gives tighter bounds of K' in words["solid"]
     assert words["auto"].endswith("; raise solver.tolerance_pct")
     stated = STATED.changed({"solver.tolerance_pct": 0.01})
     found = part_stiffness.part_stiffness(

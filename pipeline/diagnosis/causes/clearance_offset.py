@@ -1,4 +1,4 @@
-"""A gap other than the simulated one."""
+"""A gap that differs from the simulated one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stiffer one way than the other."""
+"""A stiffness that differs between the two directions of torque."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An elastic part left out."""
+"""An elastic part that the simulation leaves out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The predicted total of one unit as a distribution, and the least unlikely way to a measured one."""
+"""The predicted total of one unit as a distribution, and the most likely inputs for a measured total."""
 
 from __future__ import annotations
 

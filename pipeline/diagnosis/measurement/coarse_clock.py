@@ -1,4 +1,4 @@
-"""Times of rows that a clock gives one stamp: whole seconds, with ten rows in each."""
+"""Times of rows with a coarse clock: for example whole seconds, with ten rows in each."""
 
 from __future__ import annotations
 

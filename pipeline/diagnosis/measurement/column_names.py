@@ -1,4 +1,4 @@
-"""What the head of a column says: a quantity, and its unit where one is written."""
+"""Reads a column's heading: the quantity, and its unit if one is written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which column of a file is taken for what, in which unit."""
+"""The quantity and the unit of each column of a file."""
 
 from __future__ import annotations
 

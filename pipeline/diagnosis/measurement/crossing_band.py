@@ -1,4 +1,4 @@
-"""The torques about zero at which it is not known on which side of the gap the teeth bear."""
+"""The torques near zero at which it is not known which flanks are in contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steps in which an encoder reads the angle, and what rounding to them leaves."""
+"""The resolution of the encoder that reads the angle, and its rounding error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a rig did, row by row."""
+"""The history of a test: torque and the other channels, row by row."""
 
 from __future__ import annotations
 

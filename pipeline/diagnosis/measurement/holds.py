@@ -1,4 +1,4 @@
-"""Where torque stands still between two moves."""
+"""Holds: rows at constant torque between two moves."""
 
 from __future__ import annotations
 

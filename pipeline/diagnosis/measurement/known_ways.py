@@ -1,4 +1,4 @@
-"""Ways of the torque's programme that few numbers tell: holds, and smooth ways of many rows.
+"""Parts of the torque programme that few parameters describe: holds, and smooth moves of many rows.
 
 Torque there is known much better than by any reading: from the mean of a hold, from a polynomial over a way.
 What the noise does to their coefficients stays, and it is alike in many rows: no row averages it out.

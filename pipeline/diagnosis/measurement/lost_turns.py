@@ -1,4 +1,4 @@
-"""Torques at which a record turned while no row was written."""
+"""Reversals of torque that fell into a gap of the record."""
 
 from __future__ import annotations
 

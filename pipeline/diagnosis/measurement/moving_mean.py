@@ -1,4 +1,4 @@
-"""Means over the rows about each one."""
+"""Moving means over the rows around each row."""
 
 from __future__ import annotations
 

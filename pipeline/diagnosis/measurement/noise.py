@@ -1,4 +1,4 @@
-"""The noise of a record, coloured: what it is, and rows made as if it were white."""
+"""The coloured noise of a record: its estimate, and rows whitened by it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows that stand alone, far from their neighbours: a reading that went wrong, and no finding."""
+"""Isolated outliers: rows far from their neighbours, taken as wrong readings."""
 
 from __future__ import annotations
 

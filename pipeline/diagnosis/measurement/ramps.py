@@ -1,4 +1,4 @@
-"""How fast torque moves: the rates of rows, of ramps, and the times that follow."""
+"""Rates of torque, of single rows and of ramps, and durations that follow from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is noise in a record before any model is fitted: what local parabolas leave."""
+"""The noise of a record before any model is fitted: the residual of local parabolas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of rows that have something in common."""
+"""Runs of consecutive rows with a common property."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Long records made shorter without losing what they say."""
+"""Shortens long records by averaging and selection, so that the same effects stay visible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The form of a time that the head of a column says: "hh:mm:ss,ms", "mm:ss", "%H:%M:%S.%f"."""
+"""The time format that a column's heading states: "hh:mm:ss,ms", "mm:ss", "%H:%M:%S.%f"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The noise of a torque reading, row by row: what a parabola through the rows around it leaves."""
+"""The noise of a torque reading, row by row: the residual of a parabola through the neighbouring rows."""
 
 from __future__ import annotations
 

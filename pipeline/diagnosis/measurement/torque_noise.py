@@ -1,4 +1,4 @@
-"""The noise of the torque reading, and what reversals it may make."""
+"""The noise of the torque reading, and the apparent reversals that it causes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The step in which a torque is read, where that is coarse."""
+"""The resolution of the torque reading, if it is coarse."""
 
 from __future__ import annotations
 

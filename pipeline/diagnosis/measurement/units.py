@@ -1,4 +1,4 @@
-"""Accepted units of measured columns, how they are written, and what one of each is worth in ours."""
+"""Accepted units of measured columns, how they are written, and their conversion factors."""
 
 from __future__ import annotations
 

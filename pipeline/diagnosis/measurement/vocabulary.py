@@ -1,4 +1,4 @@
-"""Words in the heads of columns, and what they say: English, German, Czech, Chinese, Japanese."""
+"""Words in column headings and their meaning: English, German, Czech, Chinese, Japanese."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The white noise of readings that follow something slower."""
+"""The white noise of a channel whose true value changes slowly."""
 
 from __future__ import annotations
 

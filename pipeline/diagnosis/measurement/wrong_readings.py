@@ -1,4 +1,4 @@
-"""Readings of a sweep that come from no gear or programme: a sensor's code for a fault, a slipped digit.
+"""Wrong readings of a sweep: a sensor's fault code, a slipped digit.
 
 One torque of 1e6 N·m is the largest of its record, by which every share of torque is measured, so such rows
 go before anything is computed. What a model leaves is looked at later (`outliers.py`).
@@ -83,7 +83,7 @@ def _wrong(
 
 
 def _spikes(table: MeasuredTable) -> np.ndarray:
-    """(n,) torques that no gear felt; each unit by itself."""
+    """(n,) torque readings that did not act on the gear; each unit separately."""
     found = np.zeros(len(table), bool)
     for rows in table.unit_rows():
         torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))

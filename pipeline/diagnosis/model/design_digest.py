@@ -1,4 +1,4 @@
-"""What of a design an extended model depends on, as digests that tell another design from the same one."""
+"""Digests of the design values on which an extended model depends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What predictions may be off by, in extended_model.toml."""
+"""The uncertainty of predictions, as written in extended_model.toml."""
 
 from __future__ import annotations
 

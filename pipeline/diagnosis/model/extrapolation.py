@@ -1,4 +1,4 @@
-"""Which rows of a history lie beyond what a model's record spans."""
+"""Rows of a history that lie outside the range of the model's record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What friction may remember from before a file's first row, and how long: each row by those before it."""
+"""The unknown state of friction before a file's first row, and the rows that it still affects."""
 
 from __future__ import annotations
 

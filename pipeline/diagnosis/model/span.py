@@ -1,4 +1,4 @@
-"""What a model's record spans, and how far another history goes beyond it."""
+"""The range of a model's record, and by how much another history exceeds it."""
 
 from __future__ import annotations
 

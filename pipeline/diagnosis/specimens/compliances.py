@@ -1,4 +1,4 @@
-"""What FE says of all specimens: their compliances, the load zone's share, and the sensitivities.
+"""FE results of all specimens: their compliances, the load zone's share, and the sensitivities.
 
 Changes with a dimension and with the load zone always come from the hole-free model of the same meridian.
 """

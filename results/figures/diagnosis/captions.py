@@ -9,8 +9,8 @@ DRAWN_APART = """
         falling torque to the right."""
 """Of every figure of residuals over channels: its points stand where no row was recorded."""
 LOOP_WIDTH = """
-        The size of the friction is the full width of its loop at zero torque. That is not the height of
-        its band: a soft wind-up behind friction ahead of the gap widens the loop there alone."""
+        The size of the friction is the full width of its loop at zero torque. If friction
+        acts before the gap, its band is less high: a soft wind-up then widens the loop near zero only."""
 """Of the causes' figure, where friction is one of them."""
 CAPTIONS = {
     "measured_and_predicted": """

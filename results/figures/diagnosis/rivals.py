@@ -66,7 +66,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             _bare(low, len(plans))
             low.set_xlim(0, 1.18 * max(*sizes, 1e-9))
             low.set_xlabel(
-                "by how many times the noise the nearest rivals then differ", fontsize=9.5
+                "smallest difference between two rivals, as multiple of the noise", fontsize=9.5
             )
             titled(
                 figure,

@@ -42,4 +42,4 @@ def test_a_record_without_the_bend_is_not_said_to_be_straight(
     said = notes(replace(diagnosis, prediction=prediction, outcome=outcome))
     (note,) = [n for n in said if "deviates from its chord" in n]
     assert words in note
-    assert ("What else bends its curve is counted as" in note) == (cause is not None)
+    assert ("Other curvature is counted as" in note) == (cause is not None)

@@ -150,7 +150,9 @@ def test_another_record_s_model_is_kept(done: tuple[Path, dict], tmp_path: Path)
     shorter = tmp_path / "shorter.csv"
     shorter.write_bytes(head("xb1-40-sweep"))
     result = flexspline("diagnose", CUP, shorter, *GIVEN, "--out", tmp_path)
-    note = f"the diagnosis of {SWEEP.name} that was here is replaced; its model is kept as "
+    note = (
+        f"the earlier diagnosis of {SWEEP.name} in this folder was replaced; its model is kept as "
+    )
     assert f"{note}extended_model.previous.toml" in result.stderr
     kept = (tmp_path / "extended_model.previous.toml").read_bytes()
     assert kept == (folder / "extended_model.toml").read_bytes()

@@ -34,7 +34,7 @@ def test_nothing_is_asked_for_that_a_rig_cannot_do(channel: str) -> None:
     form = (UnnamedForm("ripple" if channel == "angle_arcsec" else "leading"),)
     said = why(NextMeasurement(channel, "find_structure", structure=form), "sweep")
     assert "vary it alone" not in said
-    assert "housing" in said or "rest there" in said
+    assert "housing" in said or "hold it" in said
 
 
 def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:

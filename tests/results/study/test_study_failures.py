@@ -109,7 +109,7 @@ def test_a_contradiction_of_the_models_is_told_wherever_it_was_met() -> None:
 def test_a_study_in_which_nothing_is_built_names_the_commonest_cause() -> None:
     nothing = nothing_built(result_of(outcome(0.7, 0.5), outcome(0.4, 3.0), outcome(0.4, 4.0)))
     assert nothing.startswith(
-        "none of 3 designs could be built and solved; commonest cause (2 ×): shaft.fillet_mm: design 1"
+        "none of 3 designs could be built and solved; most frequent cause (2 ×): shaft.fillet_mm: design 1"
     )
     assert "must be from 0 to 1 mm" in nothing
     assert not nothing_built(

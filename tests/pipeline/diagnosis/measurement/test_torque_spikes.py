@@ -1,4 +1,4 @@
-"""Torques that no gear felt, against pulses that it did feel."""
+"""Torque readings that did not act on the gear, and pulses that did."""
 
 from __future__ import annotations
 
