@@ -18,15 +18,17 @@ from flexspline.geometry.bounds import (
 )
 from flexspline.geometry.check_bolts import bolt_faults
 from flexspline.geometry.check_fillets import PREFIX, fault, fillet_faults
-from flexspline.geometry.culprits import culprits
+from flexspline.geometry.culprits import (
+    LONGEST_WALLS,
+    culprits,
+    least_land,
+    least_length,
+    longest_length,
+)
 from flexspline.geometry.errors import DesignError, plain_number
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
 from flexspline.geometry.shapes import Flexspline
-
-LONGEST_WALLS = 3000
-"""Of a tube's length, in walls: usual ones have 8 to 280. One layer of triangles across the wall are as many
-along it; of 3000 all figures took 56 s, of 5000 two minutes, of 15 000 each first mesh alone 17 s."""
 
 
 def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:
@@ -49,14 +51,20 @@ def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[D
 
 
 def _slender_faults(f: Flexspline) -> Iterator[DesignError]:
-    most, least = LONGEST_WALLS * f.wall_thickness_mm, f.length_mm / LONGEST_WALLS
-    if upto(most) < f.length_mm <= LENGTH_mm.high:
+    most, least = longest_length(f), f.length_mm / LONGEST_WALLS
+    if most < f.length_mm <= LENGTH_mm.high:
+        long = "as no gear has a longer tube and its mesh takes minutes"
+        room = lengths(least_length(f), most)
+        if room is None:  # what lies along the tube is longer: the wall is wrong
+            thick = lengths(least, f.ring_thickness_mm) or lengths(least, LENGTH_mm.high)
+            reason = f"must be {thick} mm: length_mm = {f.length_mm:g} is at most {LONGEST_WALLS} times it"
+            yield fault(f, "wall_thickness_mm", f"{reason}, {long}")
+            return
         yield fault(
             f,
             "length_mm",
-            f"must be {lengths(0, upto(most))} mm: up to {LONGEST_WALLS} times wall_thickness_mm = "
-            f"{f.wall_thickness_mm:g}, as no gear has a longer tube and its mesh takes minutes; or make that "
-            f"at least {plain_number(least, 4)}",
+            f"must be {room} mm: up to {LONGEST_WALLS} times wall_thickness_mm = "
+            f"{f.wall_thickness_mm:g}, {long}; or make that at least {plain_number(least, 4)}",
         )
 
 
@@ -117,15 +125,16 @@ def thickest_ring(f: Flexspline) -> float:
 
 
 def _ring_span(wall: float, ends: Interval) -> str:
-    """What the ring's thickness may be, in words."""
+    """What the ring's thickness may be, in words; "" where nothing lies between the ends."""
     low, high = max(ends[0], wall), max(ends[1], wall)
-    return beside(wall, "wall_thickness_mm", SMALLEST_MM, min(low, high), high)
+    return beside(wall, "wall_thickness_mm", SMALLEST_MM, low, high) if low <= high else ""
 
 
 def _inside_faults(f: Flexspline) -> Iterator[DesignError]:
     inner, outer = f.land.inner, f.land.outer
     if f.size(outer) >= f.inner_diameter_mm - GAP_mm:
-        room = lengths(0, below(f.inner_diameter_mm))
+        most = below(f.inner_diameter_mm)
+        room = lengths(least_land(f), most) or lengths(0, most)
         if room is None:
             least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
             reason = f"must be {least} mm: for a {f.land.noun} inside it"

@@ -39,6 +39,14 @@ def ring_ends(design: Design) -> tuple[float, float]:
     return low - f.inner_radius, high - f.inner_radius
 
 
+def least_module_mm(design: Design) -> float:
+    """The module whose pitch circle lies around the tube, where teeth are drawn; else 0."""
+    if design.flexspline.teeth == "none":
+        return 0.0
+    least = design.flexspline.wall_radius / (design.gear.teeth_flexspline / 2 - SMALLEST_LAND)
+    return least * (1 + 1e-6) + SAME_mm
+
+
 def tooth_faults(design: Design) -> Iterator[DesignError]:
     """What keeps the teeth from being drawn; nothing where none are asked for."""
     if design.flexspline.teeth == "none":
@@ -46,8 +54,7 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
     f, gear = design.flexspline, design.gear
     pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
     if pitch - land <= f.wall_radius + SAME_mm:
-        least = f.wall_radius / (gear.teeth_flexspline / 2 - SMALLEST_LAND)
-        room = span(least * (1 + 1e-6) + SAME_mm, MODULE_mm.high, 4)
+        room = span(least_module_mm(design), MODULE_mm.high, 4)
         circles = (
             f"the pitch circle, radius {pitch:.4g} mm, lies within the tube, radius "
             f"{f.wall_radius:.4g} mm"

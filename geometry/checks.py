@@ -13,7 +13,7 @@ from math import cos, radians
 from flexspline.geometry.bounds import below, span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
-from flexspline.geometry.check_tooth import ring_ends, tooth_faults
+from flexspline.geometry.check_tooth import least_module_mm, ring_ends, tooth_faults
 from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
@@ -31,6 +31,9 @@ from flexspline.geometry.play_limit import beyond_play_limit
 from flexspline.geometry.ranges import TEETH, LENGTH_mm
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
+
+HALVINGS = 20
+"""Of a range of diameters, to its millionth: its ends are told in four digits."""
 
 
 def check(design: Design) -> None:
@@ -102,6 +105,7 @@ def _module_faults(design: Design) -> Iterator[DesignError]:
     judged = with_fitting_module(design)
     if judged is not design:
         low, high = fitting_modules_mm(design)
+        low = max(low, least_module_mm(design))
         yield DesignError(
             "gear.module_mm",
             design.gear.module_mm,
@@ -122,6 +126,9 @@ def _diameter_faults(design: Design) -> Iterator[DesignError]:
         inner_mm > 2 * stroke or not module_hint(design) or not _may_have(design, low)
     ):
         return
+    room = span(low, _largest_allowed(design, low, high), 4)
+    if room is None:  # module or teeth are wrong
+        return
     why = (
         f"it looks like metres: {MM_PER_M * inner_mm:g} mm"
         if metres
@@ -130,7 +137,7 @@ def _diameter_faults(design: Design) -> Iterator[DesignError]:
     yield DesignError(
         "flexspline.inner_diameter_mm",
         inner_mm,
-        f"must be {span(low, high, 4)} mm, which module and teeth fit; {why}",
+        f"must be {room} mm, which module and teeth fit; {why}",
     )
 
 
@@ -139,6 +146,16 @@ def _may_have(design: Design, inner_mm: float) -> bool:
     part = design.flexspline.model_copy(update={"inner_diameter_mm": inner_mm})
     other = design.model_copy(update={"flexspline": part})
     return inner_mm <= LENGTH_mm.high and not any(flexspline_faults(part, ring_ends(other)))
+
+
+def _largest_allowed(design: Design, low: float, high: float) -> float:
+    """The largest inner diameter up to `high` that `_may_have` [mm]; `high` where it has not even `low`."""
+    if low > high or _may_have(design, high) or not _may_have(design, low):
+        return high
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _may_have(design, middle) else (low, middle)
+    return low
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:

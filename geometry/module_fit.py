@@ -37,9 +37,10 @@ def fitting_module_mm(design: Design) -> float:
 
 
 def fitting_modules_mm(design: Design) -> tuple[float, float]:
-    """The least and the largest that may belong to the ring."""
+    """The least and the largest that may belong to the ring, within what any module may be."""
     middle = fitting_module_mm(design)
-    return middle / WRONG_MODULE_RATIO, middle * WRONG_MODULE_RATIO
+    low, high = middle / WRONG_MODULE_RATIO, middle * WRONG_MODULE_RATIO
+    return max(low, MODULE_mm.low), min(high, MODULE_mm.high)
 
 
 def module_hint(design: Design) -> str:

@@ -33,7 +33,7 @@ class StiffnessPair:
 
 
 def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
-    """Both K [N·m/rad] as the user gives them; None where one is to be solved.
+    """Both K [N·m/rad] as the user gives them, as doubles; None where one is to be solved.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
     for name, K in (("K_b", K_b), ("K_e", K_e)):
         if K is not None:
             require_stiffness(name, K)
-    return None if K_b is None or K_e is None else StiffnessPair(K_b, K_e)
+    return None if K_b is None or K_e is None else StiffnessPair(float(K_b), float(K_e))
 
 
 def stiffness_pair(
@@ -70,4 +70,5 @@ def stiffness_pair(
         solved.append(found.K_e)
         K_e = solved[-1].K_Nm_per_rad
     doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
+    K_b, K_e = float(K_b), float(K_e)
     return StiffnessPair(K_b, K_e, found, doubt / series_compliance(K_b, K_e))

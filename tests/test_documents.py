@@ -33,8 +33,8 @@ MODULES = sorted(
 )
 CONTRACT = ROOT / "docs" / "contract.md"
 WRITERS = ("records", "gear", "diagnosis/record", "diagnosis/data_used", "diagnosis/gear_inputs",
-           "diagnosis/reading")  # fmt: skip
-"""In results/: what writes result.json, gear.json and diagnosis.json."""
+           "diagnosis/reading", "study/sensitivity")  # fmt: skip
+"""In results/: what writes result.json, gear.json, diagnosis.json and sensitivity.json."""
 DESIGNS = sorted((EXAMPLES).glob("*.toml"))
 MARKS = {
     # its keyway is cut by the CAD kernel; by default: test_unfilleted_shaft.py
@@ -190,7 +190,7 @@ def test_the_contract_lists_every_key_that_is_written_by_name(writer: str) -> No
         n.slice for n in nodes if isinstance(n, ast.Subscript) and isinstance(n.ctx, ast.Store)
     ]
     names = {k.value for k in keys if isinstance(k, ast.Constant) and isinstance(k.value, str)}
-    records = ("result.json", "gear.json", "diagnosis.json")
+    records = ("result.json", "gear.json", "diagnosis.json", "sensitivity.json")
     listed = {key for record in records for key in listed_keys(record)}
     known = {part for key in listed for part in key.split(".")}
     assert names - NOT_KEYS <= known, names - known

@@ -48,6 +48,8 @@ CountsPerTurn = Annotated[
 ]
 
 
+AGAIN = "; run the same command again: stiffnesses solved are kept, the diagnosis starts from the beginning"
+"""To who stops the command."""
 TOML = ".toml"
 SUM, GEAR = "sum", "gear"
 """What `diagnose` compares a sweep with."""
@@ -88,7 +90,7 @@ def diagnose(
 ) -> None:
     """Why measured data differ from the simulation: the causes."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
-    with answered(design, "; run the same command again: it starts from the beginning"):
+    with answered(design, AGAIN):
         from flexspline.pipeline.second_process import second_process
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
         from flexspline.results.figures.diagnosis.captions import CAPTIONS

@@ -22,6 +22,10 @@ STEPS = 8
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 FACTORS = (0.0, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 2.0, 10.0, 25.4, 100.0, 1e4)
 """Slips of units and of the pen, and values close by."""
+BY_THE_GEAR = ("flexspline.inner_diameter_mm",)
+"""Whose largest value the flexspline tells and whose least the gear: each rule names its own end."""
+AGAIN_BEFORE = (990039, 990145, 990888, 991409, 992273, 992729, 993058, 995839)
+"""Designs that were told an end refused again, of every rule of which that was so; or a range "None"."""
 
 
 def numbers_in(tables: Any) -> list[tuple[Any, Any]]:
@@ -143,6 +147,30 @@ def test_following_the_advice_ends() -> None:
         seed += 1
     assert longest <= STEPS
     assert len(seen) > 25, seen  # of the kinds of keys that there are
+
+
+def refused_again(seed: int) -> list[str]:
+    """Ends of the ranges that a refusal names, typed in, for which the same key is refused."""
+    tables = mutated(seed)
+    error = refusal(tables)
+    if error is None or "must be from" not in error.alone or error.key in BY_THE_GEAR:
+        return []
+    assert "None" not in error.alone, error.alone
+    advice = re.sub(r"\([^)]*\)", "", error.reason.partition(":")[0])
+    table, key = place_of(tables, error.key)
+    found = []
+    for end in (n for pair in re.findall(rf"from ({NUMBER}) to ({NUMBER})", advice) for n in pair):
+        whole = "bolt_count" in error.key or "teeth" in error.key
+        table[key] = int(end) if whole else float(end)
+        again = refusal(tables)
+        if again is not None and again.key == error.key:
+            found.append(f"{seed}: {error.alone}; then {again.alone}")
+    return found
+
+
+def test_both_ends_of_a_range_work() -> None:
+    numbers = [*AGAIN_BEFORE, *range(996_000, 998_000)]
+    assert not [line for seed in numbers for line in refused_again(seed)]
 
 
 def test_ends_are_rounded_inwards() -> None:

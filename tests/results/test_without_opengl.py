@@ -144,4 +144,4 @@ def test_a_study_keeps_its_table_and_says_what_is_missing(
     page = read_page((folder / "report.html").read_text(encoding="utf-8"))[0]
     for text in (pdf_letters(folder / "report.pdf"), page):
         assert letters(SAID) in text
-        assert letters("on the wave generator, as flexspline run computes it") in text
+        assert letters("Design 0 on the wave generator.") in text

@@ -312,3 +312,17 @@ def test_a_hundred_thousand_rows_within_twenty_seconds(tmp_path: Path) -> None:
     assert time.process_time() - before < 20
     assert result.exit_code == 0, result.stderr
     assert json.loads(result.stdout)["verdict"] == "named"
+
+
+def test_who_stops_a_diagnosis_reads_what_is_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Stiffnesses are in the cache: the next call does not begin with them."""
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("flexspline.results.diagnosis.diagnose.diagnose_and_write", stopped)
+    ended = flexspline("diagnose", CUP, SWEEP, "--out", tmp_path)
+    assert ended.exit_code == 130
+    assert "stiffnesses solved are kept, the diagnosis starts from the beginning" in ended.stderr
