@@ -17,6 +17,7 @@ FormKind = Literal[
     "bump",
     "curve_step",
     "softening",
+    "one_sided",
     "less_bend",
     "uneven_loop",
     "leading",
@@ -53,7 +54,9 @@ class UnnamedForm:
     Attributes
     ----------
     number : of the unit or specimen that alone has it, from 1; 0: of none. name : that unit's, where the file
-        names it. at_Nm : torque near which it is, of what is in one place. period_s : of ringing.
+        names it. at_Nm : torque near which it is, of what is in one place; of a bend of one side, from which
+        on, with that side's sign. period_s : of ringing. more_arcsec : of such a bend, the twist that it adds
+        at the largest torque; less than 0 where the gear is stiffer on that side.
     """
 
     kind: FormKind
@@ -61,6 +64,7 @@ class UnnamedForm:
     name: str = ""
     at_Nm: float | None = None
     period_s: float | None = None
+    more_arcsec: float | None = None
 
 
 @dataclass(frozen=True)

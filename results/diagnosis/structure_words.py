@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import copysign
 from typing import assert_never
 
 from flexspline.geometry.listed import joined
@@ -38,6 +39,7 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("ripple", "torque_Nm"): "a ripple over torque",
     ("ripple", "angle_arcsec"): "a ripple over the output angle",
     ("softening", "torque_Nm"): "stiffness that falls with load",
+    ("one_sided", "torque_Nm"): "a bend of the curve at torque of one sign alone",
     ("less_bend", "torque_Nm"): "a curve that bends less over torque than the gear's simulated one",
     ("uneven_loop", "direction"): "a loop that differs between the two sides",
     ("leading", "direction"): "output leads torque",
@@ -152,6 +154,8 @@ def _form(form: UnnamedForm, channel: str) -> str:
         return f"specimen {form.number} alone"
     if form.kind in ("trend", "bend") and (form.kind, channel) not in FORMS:
         return f"a {form.kind} over {channel}"  # a dimension
+    if form.kind == "one_sided" and form.at_Nm is not None:
+        return _one_sided(form.at_Nm, form.more_arcsec)
     said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
     if form.at_Nm is not None:
         place = signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2)) if form.at_Nm else "0"
@@ -159,6 +163,18 @@ def _form(form: UnnamedForm, channel: str) -> str:
     if not form.number:
         return said
     return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")
+
+
+def _one_sided(at_Nm: float, more_arcsec: float | None) -> str:
+    """On which side, from which torque on, and how much it is at the largest torque."""
+    side = "positive" if copysign(1.0, at_Nm) > 0 else "negative"
+    said = FORMS["one_sided", "torque_Nm"].replace("torque of one sign", f"{side} torque")
+    if at_Nm:
+        said += f", from {signed(at_Nm, decimals_for(abs(at_Nm), 2))} N·m on"
+    if more_arcsec is None:
+        return said
+    more = "more" if more_arcsec > 0 else "less"
+    return f"{said}: {abs(more_arcsec):.2g} arcsec {more} twist at the largest torque"
 
 
 def _backward(loop: BackwardLoop) -> str:

@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence.regressors import (
     FrictionAhead,
     design_matrix,
 )
+from flexspline.pipeline.diagnosis.sweep.local_bend import curve_bends
 from flexspline.pipeline.diagnosis.sweep.local_bump import local_bumps
 from flexspline.pipeline.diagnosis.sweep.local_step import curve_steps
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
@@ -123,6 +124,7 @@ def prepare(
             carried,
             sudden_step(history, target, kept),
             (*local_bumps(history, target, kept), *curve_steps(history, target, kept)),
+            curve_bends(history, target, kept),
         ),
         target,
         kept,

@@ -14,6 +14,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bend import CurveBend
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.local_step import CurveStep
 from flexspline.pipeline.diagnosis.sweep.nuisance.nuisance_terms import NuisanceTerm, nuisance_terms
@@ -142,11 +143,13 @@ def design_matrix(
     ahead: FrictionAhead | None = None,
     step: int | None = None,
     bumps: Sequence[Bump | CurveStep] = (),
+    bends: Sequence[Sequence[CurveBend]] = (),
 ) -> DesignMatrix:
     """Evaluate every shape of every cause, and every nuisance term, on a rig's record.
 
     `step` : the row from which a jump of the zero is likeliest (`../zero_jump.py`). `bumps` : the
-    likeliest of the curve over the torque, and its steps (`../local_bump.py`, `../local_step.py`).
+    likeliest of the curve over the torque, and its steps (`../local_bump.py`, `../local_step.py`); `bends` :
+    its bends (`../local_bend.py`).
     """
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
@@ -165,7 +168,7 @@ def design_matrix(
             )
             blocks.append(block.astype(np.float32))
             width += k
-    rivals = nuisance_terms(rig, step, bumps)
+    rivals = nuisance_terms(rig, step, bumps, bends)
     alike = Counter((rival.channel, rival.apart) for rival in rivals)
     for rival in rivals:
         terms.append(_nuisance_regressor(rival, alike[rival.channel, rival.apart], width, rig))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot, sqrt
+from math import copysign, hypot, sqrt
 
 import numpy as np
 
@@ -73,7 +73,7 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
 
 
 def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
-    """Deviations of compliance and gap by the law of a stiffness that falls with load, which has no name.
+    """Deviations of compliance and gap by the law of a bend of the curve, which has no name.
 
     Between the law found and its neighbours, of another power or load, lie those that were not tried.
     """
@@ -81,10 +81,10 @@ def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
     found = _calibrated(fit, unit)
     off = [(0.0, 0.0)]
     for i in chosen:
-        if not _softens(terms[i]):
+        if _bend(terms[i]) is None:
             continue
         for j in (i - 1, i + 1):
-            if j not in range(len(terms)) or j in chosen or not _softens(terms[j]):
+            if j not in range(len(terms)) or j in chosen or _bend(terms[j]) != _bend(terms[i]):
                 continue
             other = fit_regressors(fit.evidence, [j if k == i else k for k in chosen])
             next_one = _calibrated(other, unit)
@@ -96,8 +96,11 @@ def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
     return slope, gap
 
 
-def _softens(term: Regressor) -> bool:
-    return term.form is not None and term.form.kind == "softening"
+def _bend(term: Regressor) -> float | None:
+    """The side of a bend without a name, 0 of both; None of other terms."""
+    if term.form is None or term.form.kind not in ("softening", "one_sided"):
+        return None
+    return copysign(1.0, term.form.at_Nm) if term.form.at_Nm is not None else 0.0
 
 
 def _calibrated(fit: SweepFit, unit: int | None) -> Calibration:

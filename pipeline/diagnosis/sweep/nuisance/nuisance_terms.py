@@ -7,7 +7,7 @@ the name of the cause that mimics it best.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.local_bend import CurveBend
 from flexspline.pipeline.diagnosis.sweep.local_bump import Bump
 from flexspline.pipeline.diagnosis.sweep.local_step import CurveStep
 from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
@@ -39,7 +40,9 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.lagged_torque import lagging_t
 from flexspline.pipeline.diagnosis.sweep.nuisance.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.nuisance.torque_nuisance import (
     Made,
+    bends_of,
     bump_of,
+    even_curve,
     leading,
     over_angle,
     over_direction,
@@ -92,11 +95,15 @@ class _NuisanceKind:
 
 
 def nuisance_terms(
-    rig: FitContext, step: int | None = None, bumps: Sequence[Bump | CurveStep] = ()
+    rig: FitContext,
+    step: int | None = None,
+    bumps: Sequence[Bump | CurveStep] = (),
+    bends: Sequence[Sequence[CurveBend]] = (),
 ) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
     `step` : the row from which a jump of the zero is likeliest. `bumps` : those of the curve, and its steps.
+    `bends` : its bends, each with those that it is doubted by.
     Columns have unit rms in the rows that count.
     """
     kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
@@ -107,6 +114,10 @@ def nuisance_terms(
             partial(bump_of, bump=bump) if isinstance(bump, Bump) else partial(step_of, step=bump)
         )
         kinds = (*kinds, _NuisanceKind(make))
+    for some in bends:
+        make = partial(bends_of, bends=some)
+        of_both = bool(some) and not some[0].side
+        kinds = (*kinds, replace(SOFTENING_KIND, make=make) if of_both else _NuisanceKind(make))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
@@ -164,9 +175,11 @@ def _of_lags(rig: FitContext) -> np.ndarray:
     return np.column_stack([zeros, h.torque_Nm, h.sign, lagging_torque(h)])
 
 
+SOFTENING_KIND = _NuisanceKind(softening, positive=True, against=frozenset({HARDENING}))
 NUISANCE_KINDS = (
     _NuisanceKind(over_torque, less=_of_torque),
-    _NuisanceKind(softening, positive=True, against=frozenset({HARDENING})),
+    _NuisanceKind(even_curve),
+    SOFTENING_KIND,
     _NuisanceKind(over_angle, less=_of_torque),
     _NuisanceKind(over_direction, less=_of_lags),
     _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),

@@ -6,6 +6,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import hypot
 
+import numpy as np
+
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.identification.gear_curve_error import RIPPLED
@@ -46,12 +48,11 @@ def unexplained_of(
     `told` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
     """
     found = []
-    regressors = [identified.search.evidence.terms[i] for i in identified.best.terms]
+    forms = _forms(identified)
     for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
         rms = identified.rms[owner]
         if owner.startswith("?"):
-            forms = (r.form for r in regressors if r.owner == owner and r.form)
-            named = tuple(dict.fromkeys(_as_said(form, units) for form in forms))
+            named = tuple(dict.fromkeys(_as_said(f, units) for o, f in forms if o == owner))
             found.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
         else:
             found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
@@ -64,6 +65,22 @@ def unexplained_of(
         if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:
             found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
     return tuple(found)
+
+
+def _forms(identified: Identification) -> list[tuple[str, UnnamedForm]]:
+    """Owner and form of each term of the best set that has no name, a bend of one side with its size."""
+    evidence, posterior = identified.search.evidence, identified.fit.posterior
+    found = []
+    for i, amplitudes in zip(posterior.terms, posterior.amplitudes(evidence), strict=True):
+        term = evidence.terms[i]
+        if term.form is None:
+            continue
+        form = term.form
+        if form.kind == "one_sided":
+            most = float(np.abs(evidence.columns.all[:, term.at]).max())
+            form = replace(form, more_arcsec=float(amplitudes[0]) * most)
+        found.append((term.owner, form))
+    return found
 
 
 def _as_said(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from read_sweep import as_read, history_of, simulated, steps
 
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
-from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor
+from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor, design_matrix
 from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, run_race
@@ -39,12 +40,14 @@ def explained(extra: Callable[[History], np.ndarray], local: bool = True) -> Exp
     prepared = prepare(sweep, PREDICTION)
     if local:
         return run_race(prepared)
-    columns = prepared.columns
+    columns = design_matrix(
+        prepared.rig, dict(known_causes())
+    )  # no bumps, steps or bends sought before
 
     def is_wide(term: Regressor) -> bool:
-        if term.form is None or term.form.kind not in ("softening", "bump", "curve_step"):
+        if term.form is None or term.form.kind != "softening":
             return True
-        return term.form.kind == "softening" and bool(np.mean(columns.all[:, term.at] == 0) < 0.1)
+        return bool(np.mean(columns.all[:, term.at] == 0) < 0.1)
 
     return run_race(replace(prepared, columns=columns.only(is_wide)))
 
