@@ -10,7 +10,14 @@ from typing import NamedTuple
 import pytest
 
 from flexspline.geometry.ranges import TEMPERATURE_C
-from flexspline.pipeline.diagnosis import bend, decision, outcome, prediction, slope_hints
+from flexspline.pipeline.diagnosis import (
+    bend,
+    decision,
+    outcome,
+    prediction,
+    scale_error,
+    slope_hints,
+)
 from flexspline.pipeline.diagnosis.causes import (
     friction_hysteresis,
     known_causes,
@@ -104,6 +111,7 @@ def measured(phrase: str, *values: float) -> Stated:
 
 
 STATED = [
+    diagnosis("two factors agree within {} standard deviations", scale_error.SAME_FACTOR_DEVIATIONS),
     diagnosis("an F more than {} deviations from this place", friction_ahead_race.FAR_PLACE_DEVIATIONS),
     diagnosis("A friction torque below {} deviations of the torque's noise is not",
               gap_crossing.UNSEEN_SIGMAS),

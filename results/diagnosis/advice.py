@@ -104,6 +104,8 @@ DOING: Mapping[DoingKind, str] = {
     "closed_sweeps": "closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = "
     "{torques} N·m",
     "temperatures_in_other_order": OTHER_ORDER,
+    "check_scales": "compare the angle reading with a known angle, and the torque reading with known "
+    "weights: a wrong scale of either, or a softer material, changes the slope in the same way",
 }
 """What a rig is to do."""
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from flexspline.pipeline.diagnosis.calibration import Calibration
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -118,6 +120,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         return (
             *unit_notes(diagnosis.sweep),
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
+            *_scale_notes(diagnosis.causes, diagnosis.calibration, diagnosis.prediction),
             *of_record,
         )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
@@ -200,6 +203,30 @@ def _rounding_notes(explained: ExplainedSweep) -> list[str]:
             f"the torque is read in steps of {torque.step:.3g} N·m: the rounding error, "
             f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
+    return found
+
+
+def _scale_notes(
+    causes: Iterable[NamedCause], calibration: Calibration | None, prediction: Prediction
+) -> list[str]:
+    """What looks like an elastic part: of an angle's wrong scale, that the gap has its factor too."""
+    found = []
+    for c in causes:
+        if c.id != SERIES or calibration is None:
+            continue
+        title = title_of(c.id, c.magnitude)
+        if c.or_scale == "angle":
+            gap = calibration.gap_arcsec.value / prediction.gap_arcsec
+            slope = 1 + c.magnitude / 100
+            found.append(
+                f"{title}: the gap is {gap:.3g} times and the compliance {slope:.3g} times the simulated "
+                "one, as if the angle were read with a wrong scale"
+            )
+        else:
+            material = "softer" if c.magnitude > 0 else "stiffer"
+            found.append(
+                f"{title}: a wrong scale of the torque reading or a {material} material looks the same"
+            )
     return found
 
 
