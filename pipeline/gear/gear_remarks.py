@@ -160,10 +160,11 @@ PlainGearNote = Literal[
     "ratcheting_is_upper",
     "tube_yields_first",
     "tube_buckles_first",
+    "both_limits_alike",
 ]
 """Those without figures: play makes the free angle smaller as the stroke is not full; the gear ratchets at no
 torque, or the torque at which it does is an upper limit; the tube yields before it buckles, or buckles before
-the gear ratchets."""
+the gear ratchets; both of these torques are the same in two digits."""
 
 GearNote = (
     HalvedBalls

@@ -101,7 +101,8 @@ def calibrated_sentences(
         else:
             compliance = _against(found, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
-    beside = ", without the effects found" if calibration.beside_effects else ""
+    found_any = outcome.causes or outcome.unexplained
+    beside = ", without the effects found" if calibration.beside_effects and found_any else ""
     said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from flexspline.pipeline.diagnosis.calibration import Calibration
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
@@ -61,6 +64,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     return (
         *_wrong_readings(diagnosis),
         *_ratios(diagnosis.causes),
+        *_mean_rates(diagnosis.causes, diagnosis.model),
         *reading_notes(diagnosis.measurement.read_as),
         *against,
         *inputs,
@@ -111,6 +115,25 @@ def _ratios(causes: Iterable[NamedCause]) -> list[str]:
         for c in causes
         if (ratio := ratio_words(c))
     ]
+
+
+def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> list[str]:
+    """Of what grows at another rate later, that its size is the mean over the record."""
+    found = []
+    for c in causes:
+        shapes = [e.shape for e in model.elements.get(c.id, ())] if model else []
+        if c.id not in (WEAR, DRIFT):
+            continue
+        if any(s.get("run_in_cycles", 0.0) > 0 or s.get("settling_s", 0.0) > 0 for s in shapes):
+            how = "it levels off"
+        elif any(s["exponent"] < 1 for s in shapes):
+            how = "it slows down"
+        elif any(s["exponent"] > 1 for s in shapes):
+            how = "it quickens"
+        else:
+            continue
+        found.append(f"size of {title_of(c.id)}: mean over the record; {how}")
+    return found
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -94,3 +94,30 @@ def test_the_next_measurement_names_a_cause_as_the_verdict_does(percent: float, 
     found = NamedCause("series_compliance", 1.0, (), percent, 0.5, "%", 20.0, 3.0)
     confirm = NextMeasurement("torque_amplitude", "confirm", ("series_compliance",))
     assert f"to confirm {title}" in why(confirm, "sweep", (found,))
+
+
+@pytest.mark.parametrize(
+    ("separation", "said"),
+    [
+        (3.0, "; it distinguishes"),
+        (0.4, "about 50 such specimens are needed to distinguish"),  # 8 / 0.4²
+        (0.1, "too little to distinguish"),
+    ],
+)
+def test_a_specimen_distinguishes_only_beyond_the_noise(separation: float, said: str) -> None:
+    """Rivals lie 4 nats apart (docs/contract.md): half a square of n specimens' separation."""
+    after = NextMeasurement(
+        "flexspline.length_mm",
+        "separate",
+        ("youngs_modulus", "series_compliance"),
+        separation=separation,
+        dimension_mm=(30.0, 20.0),
+    )
+    assert said in why(after, "specimens")
+
+
+def test_nothing_found_is_not_calibrated_beside_effects() -> None:
+    calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.01))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
+    assert "without the effects found" not in said

@@ -184,6 +184,11 @@ def test_two_inputs_that_both_changed_are_named_together(
     assert "two together" in gear_inputs_notes(found)[0]
 
 
+def test_no_input_is_negative(chain: Chain) -> None:
+    """No length, no tooth's and no added spring's compliance is below 0."""
+    assert all(one.low >= 0 for one in inputs_of(DESIGN, chain))
+
+
 def test_another_gap_is_the_model_built_anew(chain: Chain) -> None:
     """What the bodies yield is kept: the angle at a torque is that of the changed drawing."""
     inputs = {each.key: each for each in inputs_of(DESIGN, chain)}
