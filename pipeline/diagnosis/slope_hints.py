@@ -29,7 +29,7 @@ CHORD_NEAR = 0.3
 AS_GEAR = 1.5
 """Times softer than flexspline and shaft from which a complete gear is as likely as a fault. At small torque
 its few teeth in mesh and its bearing yield twice what the two parts do (docs/whole-gear.md)."""
-BACK_SHARE = 0.5
+BACK_SHARE = 0.3
 """Of the simulated gap, by which the angle steps back where torque changes sign, if the two are interchanged.
 Friction's and a late reading's steps differ in sign between up and down. Judgement."""
 DEVIATIONS = 3.0
