@@ -30,7 +30,7 @@ from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.position_notes import position_notes
 from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
-from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
+from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes, zero_notes
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
@@ -144,6 +144,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         return (
             *unit_notes(diagnosis.sweep),
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
+            *zero_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
             *position_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
             *_scale_notes(diagnosis.causes, diagnosis.calibration, diagnosis.prediction),
             *of_record,
