@@ -78,6 +78,7 @@ from flexspline.pipeline.diagnosis.sweep.rig_faults import (
     torque_delay,
     torque_zero_drift,
 )
+from flexspline.results.diagnosis import position_notes
 
 DOCS = Path(__file__).parents[1] / "docs"
 WORDS = {
@@ -111,6 +112,8 @@ def measured(phrase: str, *values: float) -> Stated:
 
 
 STATED = [
+    diagnosis("the residual is {} times the median, if these are {} of all at most",
+              position_notes.STANDS_OUT_RATIO, position_notes.MOST_NAMED_SHARE),
     diagnosis("two factors agree within {} standard deviations", scale_error.SAME_FACTOR_DEVIATIONS),
     diagnosis("an F more than {} deviations from this place", friction_ahead_race.FAR_PLACE_DEVIATIONS),
     diagnosis("A friction torque below {} deviations of the torque's noise is not",

@@ -250,11 +250,14 @@ def test_interchanged_columns_are_asked_for_beside_a_rig_s_fault(
 def test_interchanged_columns_are_asked_for_where_both_slopes_are_as_simulated(
     tmp_path: Path,
 ) -> None:
-    """Of 1 arcsec per N·m: each reading taken for the other has the same slope, and a gap stepped back."""
+    """Of 1 arcsec per N·m: each reading taken for the other has the same slope, and a gap stepped back.
+
+    The angle has a zero of its own, so the interchanged torque crosses its gap off zero.
+    """
     K = 2 * ARCSEC_PER_RAD
     gap = prediction_of(XB1, K, K).gap_arcsec
-    torque = 150 * np.tile(np.interp(np.arange(100) / 100, [0, 0.25, 0.75, 1], [0, 1, -1, 0]), 4)
-    angle = torque + gap / 2 * np.sign(torque)
+    torque = 150 * np.tile(np.interp(np.arange(100) / 100, [0, 0.25, 0.75, 1], [0, 1, -1, 0]), 6)
+    angle = 20 + torque + gap / 2 * np.sign(torque)
     angle += np.random.default_rng(2).normal(0, 0.4, len(torque))
     said = {}
     for swapped, columns in ((True, (angle, torque)), (False, (torque, angle))):
