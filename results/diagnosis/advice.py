@@ -215,7 +215,9 @@ def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
         return f"{apart}; it distinguishes {separated}"
     needed = 2 * RIVAL_EVIDENCE / max(after.separation, LEAST_SEPARATION) ** 2
     if needed > MOST_SPECIMENS:
-        return f"{apart}, too little to distinguish {separated}; no other dimension does better"
+        return (
+            f"{apart}, too little to distinguish {separated}; no other dimension tried does better"
+        )
     return f"{apart}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
 
 
