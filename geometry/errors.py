@@ -41,6 +41,10 @@ class FlexsplineError(Exception):
         return _restored, (type(self), self.args, self.__dict__)
 
 
+LISTED_FAULTS = 5
+"""Further faults whose keys a message names: it stays one line of a terminal or two."""
+
+
 class DesignError(FlexsplineError, ValueError):
     """A design that cannot be accepted: which key, its value, and what would work.
 
@@ -51,14 +55,17 @@ class DesignError(FlexsplineError, ValueError):
     key : dotted key of the design file, e.g. ``flexspline.wall_thickness_mm``.
     value : what was found there; `MISSING` if nothing.
     reason : one clause that names the workable range, with its numbers.
-    others : the design's further faults: one is said too, more are counted.
+    others : the design's further faults: one is said too, more are counted and their keys named.
     """
 
     def __init__(
         self, key: str, value: object, reason: str, others: Sequence[DesignError] = ()
     ) -> None:
         self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
-        also = f" (and {len(others)} more faults)" if others else ""
+        keys = ", ".join(one_line(each.key) for each in others[:LISTED_FAULTS])
+        also = f" (and {len(others)} more faults: {keys}{', …' * (len(others) > LISTED_FAULTS)})"
+        if not others:
+            also = ""
         if len(others) == 1:
             also = f"; and {others[0]}"
         super().__init__(f"{self.alone}{also}")

@@ -19,6 +19,15 @@ def nearest_key(key: str, known: Iterable[str]) -> str | None:
     --------
     >>> nearest_key("modul_mm", ["module_mm", "teeth_flexspline"])
     'module_mm'
+    >>> nearest_key("flexspline.wall_mm", ["flexspline.length_mm", "flexspline.wall_thickness_mm"])
+    'flexspline.wall_thickness_mm'
     """
-    found = get_close_matches(key[:LONGEST], list(known), n=1, cutoff=LEAST_SIMILARITY)
+    known = list(known)
+    words, _, unit = key.rpartition("_")
+    if (
+        words
+        and len(whole := [k for k in known if k.startswith(f"{words}_") and k.endswith(unit)]) == 1
+    ):
+        return whole[0]  # a word is missing
+    found = get_close_matches(key[:LONGEST], known, n=1, cutoff=LEAST_SIMILARITY)
     return found[0] if found else None

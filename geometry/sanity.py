@@ -90,8 +90,8 @@ def _root_radius(design: Design) -> Iterator[str]:
     elif apart > allowed:
         yield (
             f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm, but the ring's outer radius "
-            f"is {ring:.4g} mm: {apart:.3g} mm apart, more than {ROOT_TOLERANCE} module = "
-            f"{allowed:.3g} mm{_fitting_ring(design, root)}"
+            f"is {ring:.4g} mm: they differ by {apart:.3g} mm, and should by at most {ROOT_TOLERANCE} module "
+            f"= {allowed:.3g} mm{_fitting_ring(design, root)}"
         )
 
 

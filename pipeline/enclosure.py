@@ -97,8 +97,8 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
         model=names.model,
         symmetry=names.symmetry,
         method=(
-            f"from {names.less} to {names.more} (less material is never stiffer); their K differ by "
-            f"{apart}; of each: {whole.method}"
+            f"from {names.less} to {names.more} (less material is never stiffer; the two K differ by "
+            f"{apart}); bounds of each by {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -126,7 +126,7 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     lower, upper = min(lower, upper), max(lower, upper)
     if half > enclosure.half_width:
         K = enclosure.K_Nm_per_rad
-        how = f"middle of the bounds (± {percent(half)} without them: {solid.method})"
+        how = f"middle of the bounds; without these bounds it is known to ± {percent(half)} ({solid.method})"
     elif enclosure.lower_Nm_per_rad <= solid.K_Nm_per_rad <= enclosure.upper_Nm_per_rad:
         K, how = solid.K_Nm_per_rad, solid.method
     else:

@@ -92,8 +92,8 @@ def too_large_line(design: Design, estimate: bool = True) -> str:
     rest = first.length_mm - split
     holes = " (its bolt holes then end there)" if design.shaft.bolt_count else ""
     return (
-        f"K_e is {why}; its bounds do not count that, and it may change with "
-        "shaft.segment[0].length_mm the wrong way. Remedy: split the first [[shaft.segment]] into one with "
+        f"K_e is {why}; its bounds do not include that, and if you change shaft.segment[0].length_mm, K_e "
+        "may change in the wrong direction. Remedy: split the first [[shaft.segment]] into one with "
         f"length_mm = {split:g} and inner_diameter_mm = {f.size(f.land.inner):g} (flexspline.{f.land.inner})"
         f"{holes} and one with length_mm = {rest:g} and the old diameters"
     )

@@ -24,7 +24,7 @@ from flexspline.results.renders.stress_picture import (
 from flexspline.results.renders.webp import write_webp
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 12
+DRAWING = 13
 """Raise when a drawing changes, so that kept pictures are drawn again."""
 TURNING = 3
 """The same of the 3-D views."""

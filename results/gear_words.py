@@ -42,6 +42,8 @@ PLAIN_NOTES: Mapping[PlainGearNote, str] = {
     "tube_yields_first": "the flexspline's tube is short or thick: it yields before it buckles",
     "tube_buckles_first": "the flexspline's tube buckles before the gear ratchets: the ratcheting torque "
     "lies above the buckling torque",
+    "both_limits_alike": "buckling torque and ratcheting torque are computed separately; rounded to two "
+    "digits they happen to be equal",
     "ratcheting_is_upper": "the ratcheting torque is an upper limit, as the model is elastic; catalogues' "
     "gears ratchet at 1/50 (ratio 30) to 1/5 (ratio 160) of it",
 }

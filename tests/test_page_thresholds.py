@@ -10,7 +10,14 @@ from typing import NamedTuple
 import pytest
 
 from flexspline.geometry.ranges import TEMPERATURE_C
-from flexspline.pipeline.diagnosis import bend, decision, outcome, prediction, slope_hints
+from flexspline.pipeline.diagnosis import (
+    bend,
+    decision,
+    outcome,
+    prediction,
+    scale_error,
+    slope_hints,
+)
 from flexspline.pipeline.diagnosis.causes import (
     friction_hysteresis,
     known_causes,
@@ -71,6 +78,7 @@ from flexspline.pipeline.diagnosis.sweep.rig_faults import (
     torque_delay,
     torque_zero_drift,
 )
+from flexspline.results.diagnosis import position_notes
 
 DOCS = Path(__file__).parents[1] / "docs"
 WORDS = {
@@ -104,6 +112,9 @@ def measured(phrase: str, *values: float) -> Stated:
 
 
 STATED = [
+    diagnosis("the residual is {} times the median, if these are {} of all at most",
+              position_notes.STANDS_OUT_RATIO, position_notes.MOST_NAMED_SHARE),
+    diagnosis("two factors agree within {} standard deviations", scale_error.SAME_FACTOR_DEVIATIONS),
     diagnosis("an F more than {} deviations from this place", friction_ahead_race.FAR_PLACE_DEVIATIONS),
     diagnosis("A friction torque below {} deviations of the torque's noise is not",
               gap_crossing.UNSEEN_SIGMAS),
@@ -163,7 +174,8 @@ STATED = [
               decision.RIVAL_EVIDENCE, decision.RIVAL_LIKELIHOOD),
     diagnosis("an unrecorded temperature by more than {} arcsec/K", thermal_clearance.MOST_PER_K),
     diagnosis("the rms of the nuisance terms exceeds {} the rms", decision.UNEXPLAINED_SHARE),
-    diagnosis("explains less than {} of the torque noise in the angle", plausible_sets.OF_TORQUE_NOISE),
+    diagnosis("A term that explains less than {} of this angle is not counted",
+              plausible_sets.OF_TORQUE_NOISE),
     diagnosis("It must be {} nats better", rate_independence.FOLLOWS_NATS),
     diagnosis("of a cause with such a rival is {} at most", decision.EVEN_ODDS),
     diagnosis("{} of the loads do not run forwards", backward_loops.BACKWARD_SHARE),

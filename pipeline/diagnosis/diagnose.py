@@ -37,6 +37,7 @@ from flexspline.pipeline.diagnosis.outcome import (
 )
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
+from flexspline.pipeline.diagnosis.scale_error import with_scale_error
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
@@ -141,6 +142,9 @@ def diagnose_measurement(
         outcome, behind = diagnose_sweep(measurement, prediction)
         if measurement.history.time_s is None:
             outcome = in_rows(outcome)
+        if behind:
+            calibration = calibration_of(behind.explained)
+            outcome = with_scale_error(outcome, measurement, prediction, calibration)
         model = behind.model if behind else None
         inputs = None
         if chain and behind:

@@ -16,6 +16,8 @@ from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
+ScaleError = Literal["angle", "unit"]
+"""Of a reading: the angle by any factor, or torque or angle in another unit."""
 
 SIZE_KNOWN = 2.0
 """Standard deviations from no effect. A smaller size is compatible with none."""
@@ -44,6 +46,8 @@ class NamedCause:
     """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
     or_temperature: bool = False
     """Of a drift: the zero may as well follow the temperature, which no cause has the name of."""
+    or_scale: ScaleError | None = None
+    """Of an elastic part: the scale error of a reading that explains the record as well."""
     none: float | None = None
     """The magnitude of no effect, of causes that only specimens show; of others their class states it."""
 
@@ -139,6 +143,7 @@ DoingKind = Literal[
     "closed_sweep",
     "closed_sweeps",
     "temperatures_in_other_order",
+    "check_scales",
 ]
 
 

@@ -29,6 +29,9 @@ CHORD_NEAR = 0.3
 AS_GEAR = 1.5
 """Times softer than flexspline and shaft from which a complete gear is as likely as a fault. At small torque
 its few teeth in mesh and its bearing yield twice what the two parts do (docs/whole-gear.md)."""
+BACK_SHARE = 0.3
+"""Of the simulated gap, by which the angle steps back where torque changes sign, if the two are interchanged.
+Friction's and a late reading's steps differ in sign between up and down. Judgement."""
 DEVIATIONS = 3.0
 """Standard deviations of a named compliance on either side; one in 370 lies beyond."""
 ANGLE_UNITS, TORQUE_UNITS = ("arcsec", "arcmin", "deg", "mrad", "rad"), ("Nm", "mNm", "Ncm", "kNm")
@@ -129,6 +132,8 @@ def _may_be_interchanged(size: SweepSize, negative_gap: bool) -> bool:
     And nothing says that it is not: readings in their columns make the angle step on at the gap.
     """
     other = size.interchanged
+    if size.gap_arcsec < -BACK_SHARE * size.simulated_gap_arcsec and size.steps_back:
+        return 1 / AS_GEAR < other < AS_GEAR  # the gap as it is along the other axis
     if size.steps_on or not 1 / AS_GEAR < other < AS_GEAR:
         return False
     return negative_gap or (_line_slope(size).far and abs(log(other)) < abs(log(size.compliance)))

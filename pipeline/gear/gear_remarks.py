@@ -160,10 +160,11 @@ PlainGearNote = Literal[
     "ratcheting_is_upper",
     "tube_yields_first",
     "tube_buckles_first",
+    "both_limits_alike",
 ]
 """Notes without figures: play reduces the free angle because the stroke is not full; the gear ratchets at no
 torque, or its ratcheting torque is an upper limit; the tube yields before it buckles, or buckles before the
-gear ratchets."""
+gear ratchets; the two torques are equal in two digits."""
 
 GearNote = (
     HalvedBalls

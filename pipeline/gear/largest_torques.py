@@ -30,6 +30,8 @@ def largest_torques(
         noted.append(BucklingTube(buckles, tube.stress_MPa(buckles)))
         if engaged_Nm is not None and two_digits(buckles) < two_digits(engaged_Nm):
             noted.append("tube_buckles_first")
+        elif engaged_Nm is not None and two_digits(buckles) == two_digits(engaged_Nm):
+            noted.append("both_limits_alike")
     return warned, noted
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from math import ceil
 
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.rate_dependence import FASTER
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NamedCause, NextMeasurement
@@ -29,6 +31,11 @@ CONFIRMS = {
     LOAD_ZONE: "specimens with another ring width, as the lobes' effect depends on it most",
 }
 """What confirms a cause that specimens show."""
+
+MOST_SPECIMENS = 100
+"""Specimens of one dimension, above which their number is not advised. Judgement."""
+LEAST_SEPARATION = 1e-3
+"""Of predicted stiffnesses in units of noise: a smaller one is none."""
 
 SLOWER, QUICKER = f"1/{FASTER:g}", f"{FASTER:g} times"
 BOTH_RATES = f"repeat the sweep at {SLOWER} and at {QUICKER} the rate of torque"
@@ -104,6 +111,8 @@ DOING: Mapping[DoingKind, str] = {
     "closed_sweeps": "closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = "
     "{torques} N·m",
     "temperatures_in_other_order": OTHER_ORDER,
+    "check_scales": "compare the angle reading with a known angle, and the torque reading with known "
+    "weights: a wrong scale of either, or a softer material, changes the slope in the same way",
 }
 """What a rig is to do."""
 
@@ -198,10 +207,18 @@ def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.dimension_mm is None:
         return f"another fixture, to distinguish {separated}"
     made, drawn = after.dimension_mm
-    return (
+    apart = (
         f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
-        f"to each other then differ by {after.separation:.1f} times the noise; it distinguishes {separated}"
+        f"to each other then differ by {after.separation:.1f} times the noise"
     )
+    if after.separation**2 >= 2 * RIVAL_EVIDENCE:
+        return f"{apart}; it distinguishes {separated}"
+    needed = 2 * RIVAL_EVIDENCE / max(after.separation, LEAST_SEPARATION) ** 2
+    if needed > MOST_SPECIMENS:
+        return (
+            f"{apart}, too little to distinguish {separated}; no other dimension tried does better"
+        )
+    return f"{apart}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
 
 
 def _one_from_others(titles: Sequence[str]) -> str:

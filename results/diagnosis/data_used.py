@@ -7,6 +7,7 @@ from typing import Any
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS, Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
@@ -24,6 +25,8 @@ AS_SIMULATED = 0.8
 AS_SIMULATED_WITHIN = 0.5
 """Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
+NOT_NARROWED = "this record does not narrow it)"
+"""How a value ends that a record leaves as open as the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
 
@@ -93,6 +96,9 @@ def calibrated_sentences(
     `slope`: the record's own, where it is surely another than simulated (`slope_off`).
     """
     gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
+    for c in outcome.causes:
+        if c.id == CLEARANCE and gap.endswith(NOT_NARROWED):
+            gap = gap.removesuffix(NOT_NARROWED) + f"the difference counts as {title_of(c.id)})"
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
         found = calibration.compliance
@@ -101,7 +107,8 @@ def calibrated_sentences(
         else:
             compliance = _against(found, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
-    beside = ", without the effects found" if calibration.beside_effects else ""
+    found_any = outcome.causes or outcome.unexplained
+    beside = ", without the effects found" if calibration.beside_effects and found_any else ""
     said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
@@ -129,9 +136,9 @@ def _is_held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> b
 def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     return (
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
-        f"{plus_minus(prediction.compliance, prediction.compliance_std)}: the slope of a straight line "
-        f"through this record is {slope.ratio * prediction.compliance:.3g}, {slope_times(slope)}, "
-        "and the difference counts as an effect)"
+        f"{plus_minus(prediction.compliance, prediction.compliance_std)}; the record itself is "
+        f"{slope_times(slope)}: a straight line through it has a slope of "
+        f"{slope.ratio * prediction.compliance:.3g}. The difference counts as an effect)"
     )
 
 
@@ -141,11 +148,9 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
-            return f"{found} (as simulated: this record does not narrow it)"
+            return f"{found} (as simulated: {NOT_NARROWED}"
         if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
-            return (
-                f"{found} (simulated {plus_minus(simulated, std)}; this record does not narrow it)"
-            )
+            return f"{found} (simulated {plus_minus(simulated, std)}; {NOT_NARROWED}"
     off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 

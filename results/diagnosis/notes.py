@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from flexspline.pipeline.diagnosis.calibration import Calibration
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
@@ -23,8 +28,9 @@ from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
+from flexspline.results.diagnosis.position_notes import position_notes
 from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
-from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
+from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes, zero_notes
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
@@ -59,6 +65,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     return (
         *_wrong_readings(diagnosis),
         *_ratios(diagnosis.causes),
+        *_mean_rates(diagnosis.causes, diagnosis.model),
         *reading_notes(diagnosis.measurement.read_as),
         *against,
         *inputs,
@@ -111,6 +118,25 @@ def _ratios(causes: Iterable[NamedCause]) -> list[str]:
     ]
 
 
+def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> list[str]:
+    """Of what grows at another rate later, that its size is the mean over the record."""
+    found = []
+    for c in causes:
+        shapes = [e.shape for e in model.elements.get(c.id, ())] if model else []
+        if c.id not in (WEAR, DRIFT):
+            continue
+        if any(s.get("run_in_cycles", 0.0) > 0 or s.get("settling_s", 0.0) > 0 for s in shapes):
+            how = "it levels off"
+        elif any(s["exponent"] < 1 for s in shapes):
+            how = "it slows down"
+        elif any(s["exponent"] > 1 for s in shapes):
+            how = "it quickens"
+        else:
+            continue
+        found.append(f"size of {title_of(c.id)}: mean over the record; {how}")
+    return found
+
+
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
         measured = diagnosis.measurement
@@ -118,6 +144,9 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         return (
             *unit_notes(diagnosis.sweep),
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
+            *zero_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
+            *position_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
+            *_scale_notes(diagnosis.causes, diagnosis.calibration, diagnosis.prediction),
             *of_record,
         )
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
@@ -200,6 +229,30 @@ def _rounding_notes(explained: ExplainedSweep) -> list[str]:
             f"the torque is read in steps of {torque.step:.3g} N·m: the rounding error, "
             f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
+    return found
+
+
+def _scale_notes(
+    causes: Iterable[NamedCause], calibration: Calibration | None, prediction: Prediction
+) -> list[str]:
+    """What looks like an elastic part: of an angle's wrong scale, that the gap has its factor too."""
+    found = []
+    for c in causes:
+        if c.id != SERIES or calibration is None:
+            continue
+        title = title_of(c.id, c.magnitude)
+        if c.or_scale == "angle":
+            gap = calibration.gap_arcsec.value / prediction.gap_arcsec
+            slope = 1 + c.magnitude / 100
+            found.append(
+                f"{title}: the gap is {gap:.3g} times and the compliance {slope:.3g} times the simulated "
+                "one, as if the angle were read with a wrong scale"
+            )
+        else:
+            material = "softer" if c.magnitude > 0 else "stiffer"
+            found.append(
+                f"{title}: a wrong scale of the torque reading or a {material} material looks the same"
+            )
     return found
 
 

@@ -22,6 +22,11 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
     if hint is None or (at_fault and not hint.interchanged):
         return ""
     times = slope_times(hint.slope)
+    if hint.interchanged and not hint.slope.far:
+        return (
+            " The angle steps back where torque changes its sign, as with torque and angle interchanged:"
+            " check the columns."
+        )
     if hint.interchanged:
         return (
             f" The slope is {times} than simulated; with torque and angle interchanged it would be near:"

@@ -83,7 +83,7 @@ ANYWHERE: Mapping[FormKind, str] = {
     "jumps": "jumps while the torque changes; stick-slip, or friction that the model does not "
     "describe",
     "comes_back": "the same misfit at the same torques in every cycle",
-    "remainder": "the residual of the best model",
+    "remainder": "the best model leaves more than noise; its form is not known",
     "slow_noise": "slow noise, too large for a comparison with the simulation",
 }
 """Words that are the same for every channel."""

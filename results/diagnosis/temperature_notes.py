@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from flexspline.geometry.listed import joined
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
-from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.sweep.identification.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import thermal_lag
+from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.results.diagnosis.words import title_of
+from flexspline.results.numbers import signed
 
 
 def lag_notes(identified: Identification) -> list[str]:
@@ -27,6 +31,25 @@ def lag_notes(identified: Identification) -> list[str]:
     if not lag.shown:
         said += "; without a lag this record is explained nearly as well"
     return [said]
+
+
+def zero_notes(explained: ExplainedSweep, unexplained: Iterable[Unexplained]) -> list[str]:
+    """How much a zero without a name changes with temperature, if nothing else of that channel is found."""
+    temperature = explained.prepared.rig.history.temperature_C
+    kinds = [
+        [form.kind for form in u.structure]
+        for u in unexplained
+        if u.channel == "temperature_C" and isinstance(u.structure, tuple)
+    ]
+    if temperature is None or ["changing_zero"] not in kinds:
+        return []
+    kept = explained.prepared.kept
+    zero = explained.identified.fit.added("?temperature_C")
+    per_K = float(np.polyfit(temperature[kept], zero[kept], 1)[0])
+    return [
+        f"the zero offset changes by {signed(per_K, 2)} arcsec/K (straight line over all temperatures): "
+        "compare with the data sheet of the angle sensor"
+    ]
 
 
 def drift_notes(causes: Iterable[NamedCause]) -> list[str]:

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import log
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, DiagnosisOutcome, Gain, NamedCause
+from flexspline.pipeline.diagnosis.outcome import (
+    SIZE_KNOWN,
+    DiagnosisOutcome,
+    Gain,
+    NamedCause,
+    ScaleError,
+)
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.sweep.calibrated_residual import ALLOWED_SIGMAS
 from flexspline.results.diagnosis.channels import channel_words
@@ -28,6 +35,10 @@ VERDICTS = {
 EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words: odds of e to that power, 22 000, 150, 20 and 3 to 1."""
 
+SIZE_AS_NONE = 1.0
+"""Standard deviations from no effect, below which a size is as good as none: beside it no "beyond doubt"."""
+SCALE_ERRORS: Mapping[ScaleError, str] = {"angle": "scale of the angle", "unit": "unit"}
+"""What may be wrong of a reading in place of an elastic part."""
 WIDE = " wide at T = 0"
 """What the size of friction's loop is."""
 WIDER_RATIO = 1.1
@@ -38,12 +49,17 @@ def sure_words(cause: NamedCause) -> str:
     """How sure a cause is, in words, from its evidence; rivals lower it."""
     if cause.alternatives:
         return "not decided"
+    if cause.or_scale:
+        return f"not decided: elastic part or {SCALE_ERRORS[cause.or_scale]}"
     # the evidence may be strong that there is an effect, its size nevertheless uncertain
     words = next((words for least, words in EVIDENCE_WORDS if cause.evidence_nats >= least), "weak")
     if cause.or_temperature:
         words += ", time or temperature undecided"
-    known = cause.deviations >= SIZE_KNOWN or _is_wider(cause)  # of a loop that closes at T = 0
-    return words if known else f"{words}, size uncertain"
+    if cause.deviations >= SIZE_KNOWN or _is_wider(cause):  # of a loop that closes at T = 0
+        return words
+    if cause.deviations < SIZE_AS_NONE:
+        return "something is there, its size is not known"
+    return f"{words}, size uncertain"
 
 
 def odds_words(nats: float) -> str:
@@ -114,6 +130,8 @@ def cause_title(cause: NamedCause) -> str:
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
     if cause.or_temperature:
         more.append("with time or temperature")
+    if cause.or_scale:
+        more.append(f"or a wrong {SCALE_ERRORS[cause.or_scale]}")
     title = title_of(cause.id, cause.magnitude)
     return f"{title} ({', '.join(more)})" if more else title
 

@@ -55,7 +55,10 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
 
 def _stations(angle_deg: np.ndarray) -> str:
     """Where forces are solved: the model's stations are not the teeth themselves."""
-    return f"at stations {np.diff(angle_deg).mean():.2f}° apart" if len(angle_deg) > 1 else ""
+    if len(angle_deg) < 2:
+        return ""
+    apart = np.diff(angle_deg).mean()
+    return f"One bar for each station of the model, {apart:.2f}° apart: the force of a pair of teeth there"
 
 
 CHART = Chart(

@@ -69,7 +69,7 @@ def stress_note(peak: StressPeak, beyond: bool) -> str:
     if peak.at_excluded_border:
         return f"Colours end {peak.exclusion_mm:.3g} mm from sharp edges, where the stress still rises."
     if beyond:
-        return "Colours end at the peak; beyond it, sharp corners are singular."
+        return "Colours end at the peak; at sharp corners the stress has no limit."
     return "Colours end at the peak."
 
 

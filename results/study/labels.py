@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from flexspline.geometry.schema import key_words
@@ -40,6 +40,18 @@ def entry(key: str) -> Quantity:
 def valued(key: str, figures: Mapping[str, float]) -> str:
     """A row's figure with its unit, and a mark where it is a peak that hangs on the stress rule."""
     said = entry(key).with_unit(figures[key])
+    return f"{said} ({BORDER})" if at_border(key, figures) else said
+
+
+def beyond(key: str, figures: Mapping[str, float], ends: Iterable[float | None]) -> str:
+    """`valued`, with as many digits as it takes to differ from the ends of a constraint."""
+    q = entry(key)
+    value = figures[key]
+    printed = {q.text(end) for end in ends if end is not None and end != value}
+    if q.text(value) not in printed:
+        return valued(key, figures)
+    exact = next(t for d in range(3, 18) if (t := f"{value:.{d}g}") not in printed)
+    said = f"{exact} {q.unit}".rstrip()
     return f"{said} ({BORDER})" if at_border(key, figures) else said
 
 

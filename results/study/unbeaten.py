@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.labels import beyond, entry, valued
 from flexspline.results.study.why import allowed
 
 
@@ -13,7 +13,7 @@ def start_breaks(result: StudyResult) -> str:
         return ""
     figures = result.start.figures
     said = [
-        f"{entry(key).name} {valued(key, figures)}, allowed are {allowed(key, limit)}"
+        f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed are {allowed(key, limit)}"
         for key, limit in result.study.file.constraint.items()
         if key in figures and limit.excess(figures[key]) > 0
     ]

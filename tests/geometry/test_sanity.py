@@ -16,7 +16,7 @@ CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
     "flexspline.ring_thickness_mm": (
         0.7,
-        ("19.75", "19.9", "0.15 mm apart", "0.03 mm", "= 0.55 would fit"),
+        ("19.75", "19.9", "differ by 0.15 mm", "0.03 mm", "= 0.55 would fit"),
     ),
     # root 0.194(100 − 1.25) = 19.16 inside the tube of 38.4 mm
     "gear.module_mm": (0.194, ("19.16", "inside the tube", "19.2 mm", "gear.module_mm")),

@@ -46,4 +46,4 @@ def test_a_design_is_no_model(tmp_path: Path) -> None:
     torque.write_text("torque_Nm\n1.0\n", encoding="utf-8")
     done = CliRunner().invoke(app, ["predict", str(CUP), "--model", str(CUP), str(torque)])
     assert done.exit_code == 2
-    assert f"{CUP}: no extended model: a design file; `diagnose` writes" in done.stderr
+    assert f"{CUP}: is a design file, not an extended model; `diagnose` writes" in done.stderr

@@ -82,6 +82,7 @@ NOTES: dict[GearNote, str] = {
     "play_beside_stroke": "read bearing_play and tight_gear together",
     "tube_yields_first": "the flexspline's tube is short or thick: it yields before it buckles",
     "tube_buckles_first": "the flexspline's tube buckles before the gear ratchets",
+    "both_limits_alike": "rounded to two digits they happen to be equal",
     "no_ratcheting": "no torque was found at which the gear ratchets",
     "ratcheting_is_upper": "the ratcheting torque is an upper limit",
 }

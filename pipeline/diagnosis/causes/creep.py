@@ -61,7 +61,10 @@ class Creep(Cause):
     per_torque = True
     spread_share = 0.06
     """Metal creeps little; a few per cent of the twist a decade are grease, adhesive and bolts."""
-    ratio = "in % of the elastic twist for each decade of time within holds"
+    ratio = (
+        "in % of the elastic twist: what the last decade of time adds in a hold of the record's median "
+        "length"
+    )
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
     elastic = True

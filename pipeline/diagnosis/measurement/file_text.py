@@ -24,6 +24,9 @@ BINARY = (
     (b"UnFinMF", "an MDF file; export it as CSV"),
     (b"MATLAB", "a MATLAB file; export it as CSV"),
     (b"\x89HDF", "an HDF5 file; export it as CSV"),
+    (b"\x89PNG", "a picture (PNG); save the readings as CSV"),
+    (b"\xff\xd8\xff", "a picture (JPEG); save the readings as CSV"),
+    (b"%PDF", "a PDF file; save the readings as CSV"),
     (b"\x1f\x8b", "compressed; unpack it first"),
 )
 """How other files begin, and what to do with them."""

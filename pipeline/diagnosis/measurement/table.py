@@ -27,6 +27,7 @@ from flexspline.pipeline.diagnosis.measurement.number_text import DecimalMark, n
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
 from flexspline.pipeline.diagnosis.measurement.units import symbol
+from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 LARGEST_NUMBER = 1e12
 """Largest number of a column in our unit. Only a slipped column or exponent is larger."""
@@ -115,7 +116,9 @@ def table_of(
     if grid.misfit is not None:
         raise grid.misfit
     if not grid.rows:
-        raise MeasurementError(grid.path, grid.head_line, "a header and no data rows")
+        misnamed = grid.path.suffix.lower() == ".xlsx" and grid.encoding != WORKBOOK
+        reason = "not a workbook in spite of its name, and as text a" if misnamed else "a"
+        raise MeasurementError(grid.path, grid.head_line, f"{reason} header and no data rows")
     grid, lost = without_lost(grid, columns) if leave_out else (grid, None)
     across = list(zip(*grid.rows, strict=True))
     _refuse_unnamed(grid, across)

@@ -124,8 +124,10 @@ def read_model_file(path: Path) -> ModelFile:
 def _check_keys(data: Mapping[str, Any], refuse: Refuse) -> None:
     """Refuse what is no extended model of this format, and missing or unknown keys."""
     if "flexspline" in data:
-        raise refuse("no extended model: a design file; `diagnose` writes extended_model.toml")
-    check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"no extended model: {r}"))
+        raise refuse(
+            "is a design file, not an extended model; `diagnose` writes extended_model.toml"
+        )
+    check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"is not an extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
     origin, calibrated = data["provenance"], data["calibrated"]

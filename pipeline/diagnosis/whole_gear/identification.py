@@ -118,7 +118,11 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearId
     best = found[0]
     if not _fits(best.chi_square, len(off) - 1):
         return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)
-    rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL_CHI_SQUARE]
+    rivals = [
+        f
+        for f in found[1:]
+        if f.chi_square < best.chi_square + RIVAL_CHI_SQUARE and f.value != f.nominal
+    ]
     one = inputs[best.key]
 
     def alone(learnt: CentralCurve) -> Chain:

@@ -17,9 +17,9 @@ STROKE_SHARES = (0.7, 1.3)
 """Of the design's stroke: where the first steps of a search may lead; no drawing is off by so much."""
 SOFTEST_PAIR = 100.0
 """Times the computed compliance of a pair of teeth."""
-STIFFEST_SERIES, SOFTEST_SERIES = -0.9, 1e3
-"""Limits of the added compliance over the shaft's: a tenth of the shaft's compliance is left, or a joint a
-thousand times softer is added. Judgement."""
+SOFTEST_SERIES = 1e3
+"""Most added compliance over the shaft's: a joint a thousand times softer. The least is 0: no spring in
+series has a negative compliance. Judgement."""
 FIRST_FLANK_um, FIRST_PLAY_um, FIRST_STROKE_SHARE = 1.0, 2.0, 0.01
 """First steps: what a maker's tolerance on clearance, play and stroke allows."""
 FIRST_PAIR, FIRST_SERIES = 3.0, 0.2
@@ -44,7 +44,7 @@ def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
     """Those that a drawing states least surely.
 
     Ends are wide: no clearance or a module of it, play up to nearly the whole stroke, a stroke ± 30 %, teeth
-    a hundred times softer, a shaft ten times stiffer. First steps are what a maker's tolerance allows.
+    a hundred times softer, a joint that adds compliance. First steps are what a maker's tolerance allows.
     """
     bearing, gear = flexible_bearing(design), design.gear
     play, w0 = design.bearing.radial_clearance_um, bearing.deflection
@@ -75,7 +75,7 @@ def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
               STROKE_SHARES[1] * w0, FIRST_STROKE_SHARE * w0, with_model(stroke)),
         GearInput("tooth pair compliance", "mm/N", pair, 0.0, SOFTEST_PAIR * pair, FIRST_PAIR * pair,
               with_model(lambda model, value: replace(model, pair=value))),
-        GearInput("compliance in series", "rad/(N·m)", 0.0, STIFFEST_SERIES * chain.shaft,
+        GearInput("compliance in series", "rad/(N·m)", 0.0, 0.0,
               SOFTEST_SERIES * chain.shaft, FIRST_SERIES * chain.shaft,
               lambda chain, value: replace(chain, holes=chain.holes + value)),
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -194,4 +194,19 @@ def _sizes(gaps: np.ndarray, count: int) -> np.ndarray:
 
 def _reach(shown: SweepPictureData, left: np.ndarray) -> float:
     most, all_but_few = np.quantile(np.abs(left[shown.kept]), [0.95, 0.998])
-    return 1.15 * float(max(min(all_but_few, MOST_REACH * most), 3 * shown.noise_arcsec))
+    points = max(min(all_but_few, MOST_REACH * most), 3 * shown.noise_arcsec)
+    lines = [
+        np.abs(y).max(initial=0.0)
+        for channel in shown.channels
+        for y in _lines(shown, channel, left)
+    ]
+    return 1.15 * float(max(points, *lines))
+
+
+def _lines(shown: SweepPictureData, channel: PlotChannel, left: np.ndarray) -> Iterator[np.ndarray]:
+    """Of each branch the mean line of a panel."""
+    few = len(np.unique(channel.values)) <= LEVELS
+    for rises in (True, False):
+        for sign in (1, -1):
+            own = shown.kept & (shown.rises == rises) & (np.sign(shown.history.torque_Nm) == sign)
+            yield means(channel.values[own], left[own], few)[1]

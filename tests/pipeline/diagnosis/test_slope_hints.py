@@ -247,6 +247,29 @@ def test_interchanged_columns_are_asked_for_beside_a_rig_s_fault(
     assert "--against gear" not in found[False]
 
 
+def test_interchanged_columns_are_asked_for_where_both_slopes_are_as_simulated(
+    tmp_path: Path,
+) -> None:
+    """Of 1 arcsec per N·m: each reading taken for the other has the same slope, and a gap stepped back.
+
+    The angle has a zero of its own, so the interchanged torque crosses its gap off zero.
+    """
+    K = 2 * ARCSEC_PER_RAD
+    gap = prediction_of(XB1, K, K).gap_arcsec
+    torque = 150 * np.tile(np.interp(np.arange(100) / 100, [0, 0.25, 0.75, 1], [0, 1, -1, 0]), 6)
+    angle = 20 + torque + gap / 2 * np.sign(torque)
+    angle += np.random.default_rng(2).normal(0, 0.4, len(torque))
+    said = {}
+    for swapped, columns in ((True, (angle, torque)), (False, (torque, angle))):
+        rows = enumerate(zip(*columns, strict=True))
+        text = "".join(f"{i // 100},{i},{t:.3f},{a:.3f}\n" for i, (t, a) in rows)
+        path = tmp_path / f"{swapped}.csv"
+        path.write_text("cycle,time_s,torque_Nm,angle_arcsec\n" + text, encoding="utf-8")
+        said[swapped] = summary(diagnose_file(XB1, path, K, K))
+    assert said[True].endswith("as with torque and angle interchanged: check the columns.")
+    assert "interchanged" not in said[False]
+
+
 def test_a_turned_sign_is_no_stiffness_s_fault(tmp_path: Path) -> None:
     turned = sweep(tmp_path, Fault("angle_arcsec", lambda v: -v, "angle_arcsec"))
     with pytest.raises(MeasurementError, match=r"reversed\?$"):

@@ -38,3 +38,11 @@ def test_ratcheting_is_set_beside_a_buckling_torque_that_is_given(
     assert ("is an upper limit" in said) == (ratchets_Nm is not None)
     assert (FIRST in said) is first
     assert (SHARE in said) is share
+
+
+def test_equal_torques_are_said_to_be_no_copy() -> None:
+    """790 N·m each in two digits."""
+    _, notes = largest_torques(TUBE.lower_edge_Nm * 1.001, TUBE, 20.0)
+    assert "both_limits_alike" in notes
+    _, notes = largest_torques(500.0, TUBE, 20.0)
+    assert "both_limits_alike" not in notes

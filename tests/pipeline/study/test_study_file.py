@@ -25,6 +25,7 @@ from flexspline.pipeline.study.study import StudyError
         ('"K_b_Nm_per_rad"', '"K_b_Nm"', 'objective."K_b_Nm"', "did you mean K_b_Nm_per_rad?"),
         ('"maximize"', '"maximum"', 'objective.K_b_Nm_per_rad', '"minimize" or "maximize"'),
         ("wall_thickness_mm", "wall_thicknes_mm", "wall_thicknes_mm", "wall_thickness_mm?"),
+        ("wall_thickness_mm", "wall_mm", "wall_mm", "wall_thickness_mm?"),
         ("min = 0.3", "min = 0.6", "wall_thickness_mm", "below max = 0.5"),
         ("min = 0.3", "min = -0.3", "wall_thickness_mm", "from 0.001 to 10000"),
         ("min = 0.3, ", "", "wall_thickness_mm", "min = …, max = …"),

@@ -55,6 +55,7 @@ BAD = {
     "fields missing": (rows("torque_Nm,angle_arcsec", *GOOD, "0.5"), ":42: 1 field where the header has 2"),
     "wrong encoding": (b"torque_Nm,angle_arcsec,\x81\n", "not text in UTF-8, cp1252, "),
     "half of sixteen-bit text": ("torque_Nm,angle_arcsec\n".encode("utf-16")[:-1], "is not; save the file"),
+    "a picture": (b"\x89PNG\r\n\x1a\n\0\0", "is a picture (PNG)"),
     "a NUL byte": (rows("torque_Nm,angle_arcsec", "0.5,\0"), "NUL"),
     "an empty file": (b"", "no header line"),
     "only comments": (b"# nothing\n", "no header line"),
@@ -189,3 +190,9 @@ def test_a_run_s_report_stays_and_an_earlier_diagnosis_goes(tmp_path: Path) -> N
     own = {"diagnosis.json", "diagnosis.pdf", "diagnosis.html"}
     assert {p.name for p in out.iterdir()} == own | {"report.pdf", "report.html", "result.json"}
     assert (out / "report.pdf").read_text() == "earlier"
+
+
+def test_a_text_named_as_a_workbook_is_said_to_be_none(tmp_path: Path) -> None:
+    path = tmp_path / "bad.xlsx"
+    path.write_bytes(b"hello")
+    refused(diagnose(path), "not a workbook in spite of its name", tmp_path / "out")

@@ -234,7 +234,7 @@ def test_a_broken_model_is_refused_before_any_solver_starts(tmp_path: Path) -> N
     for command in (("predict", CUP, SWEEP), ("run", CUP)):
         result = flexspline(*command, "--model", CUP, "--out", tmp_path / "out")
         assert result.exit_code == 2
-        assert "no extended model" in result.stderr
+        assert "not an extended model" in result.stderr
         assert len(result.stderr.splitlines()) == 1
         assert not (tmp_path / "out").exists()
 

@@ -79,7 +79,7 @@ def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
     found = DiagnosisOutcome("unknown")
     said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
     assert "does not narrow" not in said
-    assert "the slope of a straight line through this record is 1.54, 6.49 times stiffer" in said
+    assert "6.49 times stiffer: a straight line through it has a slope of 1.54" in said
     # a compliance that follows the slope says it by itself
     moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
     said = calibrated_sentences(moved, prediction, found, SlopeRatio(0.86, 0.85, 0.87))
@@ -94,3 +94,40 @@ def test_the_next_measurement_names_a_cause_as_the_verdict_does(percent: float, 
     found = NamedCause("series_compliance", 1.0, (), percent, 0.5, "%", 20.0, 3.0)
     confirm = NextMeasurement("torque_amplitude", "confirm", ("series_compliance",))
     assert f"to confirm {title}" in why(confirm, "sweep", (found,))
+
+
+@pytest.mark.parametrize(
+    ("separation", "said"),
+    [
+        (3.0, "; it distinguishes"),
+        (0.4, "about 50 such specimens are needed to distinguish"),  # 8 / 0.4²
+        (0.1, "too little to distinguish"),
+    ],
+)
+def test_a_specimen_distinguishes_only_beyond_the_noise(separation: float, said: str) -> None:
+    """Rivals lie 4 nats apart (docs/contract.md): half a square of n specimens' separation."""
+    after = NextMeasurement(
+        "flexspline.length_mm",
+        "separate",
+        ("youngs_modulus", "series_compliance"),
+        separation=separation,
+        dimension_mm=(30.0, 20.0),
+    )
+    assert said in why(after, "specimens")
+
+
+def test_nothing_found_is_not_calibrated_beside_effects() -> None:
+    calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.01))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
+    assert "without the effects found" not in said
+
+
+def test_a_gap_beside_the_clearance_found_is_not_called_open() -> None:
+    """The record has it narrowly: the simulated gap and the clearance found together."""
+    found = NamedCause("clearance_offset", 1.0, (), 35.0, 0.06, "arcsec", 20.0, 17.0)
+    calibration = Calibration(Estimate(71.0, 9.9), True, Estimate(10.0, 0.01))
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("named", (found,)))
+    assert "does not narrow" not in said
+    assert "the difference counts as clearance other than simulated" in said

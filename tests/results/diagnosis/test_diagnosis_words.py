@@ -106,7 +106,7 @@ def test_a_ratio_says_of_what(cause: Cause) -> None:
 
 def test_sizes_stand_below_each_other_however_long_a_title_is() -> None:
     causes = (named("kinematic_error", 9.0, "arcsec"), named("friction_hysteresis", 12.0, "arcsec"))
-    found = DiagnosisOutcome("named", (*causes, named("stiffness_hardening", 1.3, "1")))
+    found = DiagnosisOutcome("named", (*causes, named("stiffness_hardening", 2.3, "1")))
     diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(10.0, 0.2, 60.0, 5.0), found)
     rows = [r for r in diagnosis_table(diagnosis, Path("out")).splitlines() if "beyond doubt" in r]
     assert len(rows) == 3
@@ -164,7 +164,7 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     loop, load = page["causes"]
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
     assert loop["magnitude"] == "12.00 ± 0.50 arcsec wide at T = 0"
-    assert load["sure"] == "beyond doubt, size uncertain"
+    assert load["sure"] == "something is there, its size is not known"
 
 
 def test_two_that_stand_for_each_other_are_said_once() -> None:

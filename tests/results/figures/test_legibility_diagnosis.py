@@ -154,6 +154,25 @@ def test_points_that_are_moved_are_said_to_be(tmp_path: Path) -> None:
         assert "rising torque to the left of its value" in caption(name, where="torque")
 
 
+def test_mean_lines_lie_inside_their_frame(tmp_path: Path) -> None:
+    """Twenty arcsec in one cycle of five are in fewer rows than the frame's height is set by."""
+    path = sweep(tmp_path / "m.csv", lambda *_: 0.0)
+    shown = seen(diagnose_file(load_design(CUP), path, 31329, 43339))
+    assert shown is not None
+    left = np.zeros(len(shown.kept))
+    some = np.flatnonzero(shown.kept & (shown.history.cycle == 1) & (shown.output_Nm > 0))
+    left[some] = 20 * shown.noise_arcsec
+    few = some[: len(some) // 4]
+    left[some[len(few) :]] = 0.0
+    with drawn_figures() as figures:
+        write_channels(tmp_path / "r.png", shown, left, "Residual")
+    for axes in figures[0].axes:
+        low, high = axes.get_ylim()
+        for line in axes.lines:
+            if line.get_marker() == "None" and len(line.get_ydata()):
+                assert low <= min(line.get_ydata()) <= max(line.get_ydata()) <= high
+
+
 def test_the_legend_counts_each_kind_of_row_that_was_not_used(tmp_path: Path) -> None:
     path = sweep(tmp_path / "m.csv", lambda *_: 0.0)
     diagnosis = diagnose_file(load_design(CUP), path, 31329, 43339)

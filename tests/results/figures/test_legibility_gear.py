@@ -51,6 +51,20 @@ def test_the_tallest_bars_are_named_with_force_and_place(tmp_path: Path) -> None
     assert said == ["largest: 41 N at 6°", "largest: 77 N at −30°"]
 
 
+def test_a_bar_is_said_to_be_a_station_and_not_a_tooth(tmp_path: Path) -> None:
+    curve = replace(
+        CURVES["usual"], tooth_angle_deg=(-6.0, 0.0, 6.0), tooth_force_N=(1.0, 2.0, 41.0)
+    )
+    with drawn_figures() as found:
+        write_gear_loads(tmp_path / "a.png", curve)
+    assert (
+        found[0]
+        .axes[0]
+        .get_xlabel()
+        .startswith("One bar for each station of the model, 6.00° apart")
+    )
+
+
 @pytest.mark.parametrize("tallest", [-84.0, 0.0, 84.0])
 def test_no_word_stands_among_the_bars(tmp_path: Path, tallest: float) -> None:
     at = (-84.0, -40.0, 0.0, 40.0, 84.0)

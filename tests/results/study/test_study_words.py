@@ -21,7 +21,7 @@ from flexspline.results.report.document import Pictures, Table
 from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.gains import gains_drawn, gains_shown
-from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.labels import beyond, entry, valued
 from flexspline.results.study.notes import border_warnings, notes, unmoved, unsettled, wide_bounds
 from flexspline.results.study.question import question
 from flexspline.results.study.record import summary, words
@@ -166,6 +166,12 @@ def test_a_start_that_is_not_allowed_is_marked(stress: float, broken: bool) -> N
     assert ("breaks a constraint" in line and "311" in line) is broken
     assert ("breaks a constraint" in report) is broken
     assert ("start (not allowed)" in report) is broken
+
+
+def test_a_figure_just_beyond_a_limit_has_the_digits_that_show_it() -> None:
+    assert beyond(STRESS, {STRESS: 300.09}, (None, 300.0)) == "300.1 MPa"
+    assert beyond(STRESS, {STRESS: 300.004}, (None, 300.0)) == "300.004 MPa"
+    assert beyond(STRESS, {STRESS: 311.0}, (None, 300.0)) == valued(STRESS, {STRESS: 311.0})
 
 
 def test_a_constraint_that_holds_is_said_with_its_limit() -> None:

@@ -135,7 +135,7 @@ def test_faults_are_named(name: str, tmp_path: Path) -> None:
     [
         (b"\xff\xfe", "not UTF-8"),
         (b"", "the file is empty"),
-        (b"name = 'XB1-40 cup'", "no extended model"),
+        (b"name = 'XB1-40 cup'", "not an extended model"),
         (b"#" * 1_000_001, "at most"),
         (b"a = " + b"[" * 5000, "nested too deeply"),
     ],

@@ -184,6 +184,23 @@ def test_two_inputs_that_both_changed_are_named_together(
     assert "two together" in gear_inputs_notes(found)[0]
 
 
+def test_no_input_is_negative(chain: Chain) -> None:
+    """No length, no tooth's and no added spring's compliance is below 0."""
+    assert all(one.low >= 0 for one in inputs_of(DESIGN, chain))
+
+
+def test_a_gear_stiffer_than_simulated_has_no_negative_spring(chain: Chain, tmp_path: Path) -> None:
+    """Three per cent of the shaft's compliance are missing: only other inputs may explain that."""
+    series = next(i for i in inputs_of(DESIGN, chain) if i.key == "compliance in series")
+    found = diagnosed(
+        chain, series.changed(chain, -0.03 * chain.shaft), tmp_path / "a.csv"
+    ).gear_inputs
+    assert found is not None
+    said = " ".join(gear_inputs_notes(found))
+    assert "compliance in series = -" not in said
+    assert "compliance in series = 0" not in said
+
+
 def test_another_gap_is_the_model_built_anew(chain: Chain) -> None:
     """What the bodies yield is kept: the angle at a torque is that of the changed drawing."""
     inputs = {each.key: each for each in inputs_of(DESIGN, chain)}
