@@ -103,3 +103,39 @@ def test_at_several_rates_a_lag_has_its_size(
     size = SHARE * PREDICTION.compliance * tau_s
     assert abs(lag.magnitude - size) < 3 * lag.magnitude_std
     assert lag.magnitude == pytest.approx(size, rel=0.1)
+
+
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize("tau_s", [15.0, 25.0, 50.0])
+def test_of_ramps_at_one_rate_a_lag_is_not_surely_friction(tau_s: float) -> None:
+    """Triangles of 200 s: a loop of friction with thresholds of some spread is the lag's too."""
+    history = run(triangle, (200.0,), 6)
+    found = told(history, kelvin(history, triangle, tau_s))
+    loops = {"friction_hysteresis", "rate_dependence"}
+    loop = next(c for c in found.causes if c.id in loops)
+    assert loops <= {loop.id, *loop.alternatives}
+    assert found.verdict == "ambiguous"
+
+
+@pytest.mark.usefixtures("causes_only")
+def test_of_a_sine_at_one_rate_a_long_lag_has_its_size() -> None:
+    """τ is two thirds of a ramp: of a shorter one, the loop would be as wide with two thirds of c·τ."""
+    history, tau_s = run(sine, (200.0,), 6), 25.0
+    found = told(history, kelvin(history, sine, tau_s))
+    lag = next(c for c in found.causes if c.id == "rate_dependence")
+    assert abs(lag.magnitude - SHARE * PREDICTION.compliance * tau_s) < 3 * lag.magnitude_std
+    assert "friction_hysteresis" not in {c.id for c in found.causes}
+
+
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize("wave", [sine, triangle])
+def test_creep_without_holds_is_not_surely_a_lag(wave: Wave) -> None:
+    """3 % of the twist in each decade, from 0.3 s to 3000 s."""
+    history = run(wave, (60.0, 240.0, 960.0), 2)
+    per_decade = 6
+    times = np.geomspace(0.3, 3000.0, 4 * per_decade + 1)
+    twist = sum(kelvin(history, wave, tau) for tau in times) * 0.03 / SHARE / per_decade
+    found = told(history, np.asarray(twist))
+    lag = next(c for c in found.causes if c.id == "rate_dependence")
+    assert "creep" in lag.alternatives
+    assert found.verdict == "ambiguous"
