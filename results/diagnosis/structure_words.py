@@ -89,13 +89,15 @@ ANYWHERE: Mapping[FormKind, str] = {
 """Words that are the same for every channel."""
 LATE = (
     "and so does the step of the gap; a lag of the twist does not delay this step. Drag ahead of the teeth "
-    "that grows with the speed, for example from stiff grease, would look the same"
+    "that grows with the speed, for example from stiff grease, would look the same, and at one rate so would "
+    "a second play behind friction, such as a loose key"
 )
 LATE_ANGLE = {
-    FILTER: "the angle reading follows the torque through a filter of {0:.2g} ± {1:.1g} s, " + LATE,
-    DELAY: "the angle reading follows the torque {0:.2g} ± {1:.1g} s late, " + LATE,
-    BOTH: "both readings come through a filter of {0:.2g} ± {1:.1g} s: the step of the gap begins before the "
-    "torque reading is zero, and is spread over that time",
+    FILTER: "it looks as if the angle reading follows the torque through a filter of {0:.2g} ± {1:.1g} s, "
+    + LATE,
+    DELAY: "it looks as if the angle reading follows the torque {0:.2g} ± {1:.1g} s late, " + LATE,
+    BOTH: "it looks as if both readings come through a filter of {0:.2g} ± {1:.1g} s: the step of the gap "
+    "begins before the torque reading is zero, and is spread over that time",
 }
 UNRECORDED = {
     "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",

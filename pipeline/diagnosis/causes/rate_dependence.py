@@ -26,8 +26,10 @@ not."""
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp, where torque is held: a longer lag is creep, which shows in holds."""
 LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
-"""The same where torque is never held and ramps differ, up to half of the slowest cycle's: at one rate so
-long a lag may be friction. Four of the quickest cycle's ramps are 98 % of its twist lost."""
+"""The same where torque is never held. Four of the quickest cycle's ramps are 98 % of its twist lost."""
+LONGEST_SHARE = 4.0
+"""Of the slowest cycle's ramp, there. With half of it, a lag of a quarter of a triangle's cycle was named
+friction, and one of a sine's had two thirds of its size."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 """Of the rate: twist that levels off with it or steepens; refined, so that steps of a third do."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.4, 1.8
@@ -66,9 +68,9 @@ class RateDependence(Cause):
         }  # fmt: skip
         shares = list(LAG_SHARES)
         if hold_s(rig.history) == 0:
-            slowest = slowest_ramp_s(rig.history) / ramp
-            shares += [s for s in LONGER_SHARES if s <= slowest / 2]
-            common["longest_s"] = shares[-1] * ramp
+            longest = LONGEST_SHARE * slowest_ramp_s(rig.history) / ramp
+            shares += [s for s in LONGER_SHARES if s <= longest]
+            common["longest_s"] = max(longest, shares[-1]) * ramp
         lags_s = sorted({max(s * ramp, shortest) for s in shares})
         found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
         found += [

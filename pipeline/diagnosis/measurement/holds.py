@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import hypot
+
 import numpy as np
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -29,6 +31,12 @@ RANGE_SIGMAS = 6.0
 """Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
 SURE_SIGMAS = 3.0
 """Standard deviations, by noise, by which a hold's rate must be lower than the rate beside it."""
+CREST_ROWS = 2
+"""Most rows of what may be a sine's crest, over the rows beside it, within which it must have a ramp's rate.
+Judgement."""
+PARABOLA_SHARE, PARABOLA_NOISE = 0.02, 1.4
+"""What a parabola may leave of a sine's crest (rms), over its depth, and over the torque's noise: of a sine
+without noise 0.012 at most, of a level between two ramps 0.034 to 0.09."""
 AROUND_ROWS = 20
 """Rows of the mean torque before and after a gap between two runs. The mean is known to a fifth of the
 noise."""
@@ -67,6 +75,9 @@ def holds(history: History) -> list[np.ndarray]:
                 and sharp
                 and level
                 and _stands(torque, t, i, j + width, noise, fast)
+                and not (
+                    len(hold) <= CREST_ROWS * beside and _is_crest(torque, t, i, j + width, noise)
+                )
             ):
                 found.append(hold)
     return found
@@ -117,6 +128,24 @@ def _stands(
     rate, doubt = abs(float(away @ torque)) / square, noise_Nm / square**0.5
     beside = min(fast, _rate_beside(torque_Nm, time_s, i, j))
     return rate - doubt < HOLD_RATE_SHARE * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
+
+
+def _is_crest(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int, noise_Nm: float) -> bool:
+    """Whether torque turns in rows i to j − 1, and as many on either side, along a parabola.
+
+    A sine's crest in a slow cycle of a record with quick ones, or of few rows, would else be a hold.
+    """
+    first, end = 2 * i - j, 2 * j - i
+    if first < 0 or end > len(time_s):
+        return False
+    torque, t = torque_Nm[first:end], time_s[first:end] - time_s[i:j].mean()
+    before, after = torque[[0, -1]] - torque_Nm[i:j].mean()
+    depth = min(abs(before), abs(after))
+    if before * after <= 0 or depth < CLEAR_SIGMAS / 2 * noise_Nm:
+        return False
+    left = torque - np.polynomial.Polynomial.fit(t, torque, 2)(t)
+    most = hypot(PARABOLA_SHARE * depth, PARABOLA_NOISE * noise_Nm)
+    return float(np.mean(left**2)) < most**2
 
 
 def _rate_beside(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import hypot
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
@@ -19,6 +20,7 @@ from flexspline.pipeline.diagnosis.decision import (
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.identification.creep_without_holds import creep_explains
 from flexspline.pipeline.diagnosis.sweep.identification.dashpot import dashpot_explains
 from flexspline.pipeline.diagnosis.sweep.identification.drift_or_temperature import (
     may_follow_temperature,
@@ -114,6 +116,8 @@ def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool
         yield SERIES
     if cause == FRICTION and RATE in identified.named and dashpot_explains(identified):
         yield RATE  # of a low power, alone
+    if cause == RATE and creep_explains(identified):
+        yield CREEP
     if cause == DRIFT and zero_moves(explained):
         yield OFFSET
 

@@ -88,7 +88,9 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
         each_shows = all({c.id for c in own.causes} == together for own in judged.values())
         if each_shows and len(causes) == len(together):
             return None
-        if {c.id for c in causes} - together - differ:  # which fewer rows may find by chance
+        rivals = {other for c in whole.decision.causes for other in c.alternatives}
+        # which fewer rows may find by chance
+        if {c.id for c in causes} - together - rivals - differ:
             return None
     left = tuple(u for own in judged.values() for u in own.unexplained)
     decision = Decision("ambiguous" if largest[0] else "named", causes, left)

@@ -9,6 +9,8 @@ from math import inf, log
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate, Search, owned_by
@@ -43,6 +45,8 @@ def rivals_of(
     found: dict[str, tuple[float, Candidate]] = {}
     for other, more in product(sorted(others), beside):
         allowed = {other, *more, *(p for p in present - {cause} if not p.startswith("?"))}
+        if (cause, other) == (FRICTION, RATE):
+            allowed.add(SERIES)  # a lag beside a spring is one Kelvin element
         parts = known_causes()[other].made_of
         starts = [without({cause})]
         if cause in parts <= present:

@@ -106,7 +106,10 @@ def test_a_filter_of_the_angle_is_said_with_its_time(
     (left,) = outcome.unexplained
     assert isinstance(left.structure, LateAngle)
     assert left.limit
-    assert "angle reading follows the torque through a filter" in structure_words(left)
+    said = structure_words(left)
+    assert "looks as if the angle reading follows the torque through a filter" in said
+    assert "would look the same" in said
+    assert "loose key" in said
     assert outcome.next_measurement is not None
     assert "filters of the torque and the angle channel" in why(outcome.next_measurement, "sweep")
 
