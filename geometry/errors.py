@@ -62,12 +62,12 @@ class DesignError(FlexsplineError, ValueError):
         self, key: str, value: object, reason: str, others: Sequence[DesignError] = ()
     ) -> None:
         self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
-        keys = ", ".join(one_line(each.key) for each in others[:LISTED_FAULTS])
-        also = f" (and {len(others)} more faults: {keys}{', …' * (len(others) > LISTED_FAULTS)})"
-        if not others:
-            also = ""
-        if len(others) == 1:
-            also = f"; and {others[0]}"
+        also = f"; and {others[0]}" if others else ""
+        if len(others) > 1:
+            keys = ", ".join(one_line(each.key) for each in others[:LISTED_FAULTS])
+            also = (
+                f" (and {len(others)} more faults: {keys}{', …' * (len(others) > LISTED_FAULTS)})"
+            )
         super().__init__(f"{self.alone}{also}")
 
     @property

@@ -25,8 +25,8 @@ AS_SIMULATED = 0.8
 AS_SIMULATED_WITHIN = 0.5
 """Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
-NOT_NARROWED = "this record does not narrow it)"
-"""How a value ends that a record leaves as open as the simulation."""
+NOT_NARROWED = "this record does not narrow it"
+"""What is said of a value that a record leaves as open as the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
 
@@ -95,10 +95,13 @@ def calibrated_sentences(
 
     `slope`: the record's own, where it is surely another than simulated (`slope_off`).
     """
-    gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
-    for c in outcome.causes:
-        if c.id == CLEARANCE and gap.endswith(NOT_NARROWED):
-            gap = gap.removesuffix(NOT_NARROWED) + f"the difference counts as {title_of(c.id)})"
+    moved = any(c.id == CLEARANCE for c in outcome.causes)
+    gap = _against(
+        calibration.gap_arcsec,
+        prediction.gap_arcsec,
+        prediction.gap_std_arcsec,
+        f"the difference counts as {title_of(CLEARANCE)}" if moved else NOT_NARROWED,
+    )
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
         found = calibration.compliance
@@ -142,15 +145,16 @@ def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     )
 
 
-def _against(measured: Estimate, simulated: float, std: float) -> str:
+def _against(measured: Estimate, simulated: float, std: float, as_open: str = NOT_NARROWED) -> str:
+    """A value beside the simulated one; `as_open` is said where the record leaves it as open."""
     found = plus_minus(measured.value, measured.std)
     if not std:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
-            return f"{found} (as simulated: {NOT_NARROWED}"
+            return f"{found} (as simulated: {as_open})"
         if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
-            return f"{found} (simulated {plus_minus(simulated, std)}; {NOT_NARROWED}"
+            return f"{found} (simulated {plus_minus(simulated, std)}; {as_open})"
     off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 

@@ -39,8 +39,7 @@ def entry(key: str) -> Quantity:
 
 def valued(key: str, figures: Mapping[str, float]) -> str:
     """A row's figure with its unit, and a mark where it is a peak that hangs on the stress rule."""
-    said = entry(key).with_unit(figures[key])
-    return f"{said} ({BORDER})" if at_border(key, figures) else said
+    return _marked(entry(key).with_unit(figures[key]), key, figures)
 
 
 def beyond(key: str, figures: Mapping[str, float], ends: Iterable[float | None]) -> str:
@@ -51,7 +50,10 @@ def beyond(key: str, figures: Mapping[str, float], ends: Iterable[float | None])
     if q.text(value) not in printed:
         return valued(key, figures)
     exact = next(t for d in range(3, 18) if (t := f"{value:.{d}g}") not in printed)
-    said = f"{exact} {q.unit}".rstrip()
+    return _marked(f"{exact} {q.unit}".rstrip(), key, figures)
+
+
+def _marked(said: str, key: str, figures: Mapping[str, float]) -> str:
     return f"{said} ({BORDER})" if at_border(key, figures) else said
 
 

@@ -12,9 +12,9 @@ from typing import Literal
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, stops
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.sweep.local_bump import FRICTION_SHARES, orthonormal
+from flexspline.pipeline.diagnosis.sweep.local_bump import friction_loops, orthonormal
 
 Law = Literal["power", "gradual"]
 """((|T| − place)/(largest − place))^power beyond the place; a slope that grows as 1/(1 + exp(−(|T| − place)/
@@ -107,9 +107,8 @@ def _beside(history: History, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     """(n, k) zeros, compliance, gap, friction, and odd functions of torque; the same with even ones."""
     x = history.torque_Nm / history.largest_Nm
     zeros = history.unit[:, None] == np.unique(history.unit[rows])
-    limits = np.array(FRICTION_SHARES) * history.largest_Nm
-    loops = stops(history, history.torque_Nm, limits, np.zeros(len(limits))) / limits
-    plain = np.column_stack([zeros, x, np.sign(x), direction_of_loading(history), loops])
+    direction, loops = direction_of_loading(history), friction_loops(history)
+    plain = np.column_stack([zeros, x, np.sign(x), direction, loops])
     odd, even = np.column_stack([x * np.abs(x), x**3]), np.column_stack([np.abs(x), x**2, x**4])
     return np.hstack([plain, odd])[rows], np.hstack([plain, even])[rows]
 

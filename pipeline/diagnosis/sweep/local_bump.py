@@ -129,10 +129,15 @@ def beside_bumps(history: History, rows: np.ndarray) -> np.ndarray:
     zeros = history.unit[:, None] == np.unique(history.unit[rows])
     direction = direction_of_loading(history)
     powers = [x, np.abs(x), x * np.abs(x), x**3, np.sign(x), direction, direction * x]
-    limits = np.array(FRICTION_SHARES) * history.largest_Nm
-    loops = stops(history, history.torque_Nm, limits, np.zeros(len(limits))) / limits
+    loops = friction_loops(history)
     passed = np.arange(len(x))[:, None] / len(x)
     return np.column_stack([zeros, *powers, loops, loops * passed])[rows]
+
+
+def friction_loops(history: History) -> np.ndarray:
+    """(n, k) steady loops of friction, of height 1, that slip at FRICTION_SHARES of the largest torque."""
+    limits = np.array(FRICTION_SHARES) * history.largest_Nm
+    return np.asarray(stops(history, history.torque_Nm, limits, np.zeros(len(limits))) / limits)
 
 
 def orthonormal(columns: np.ndarray) -> np.ndarray:

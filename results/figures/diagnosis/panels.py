@@ -133,20 +133,16 @@ def _panel(
     few = len(levels) <= LEVELS
     step = float(np.diff(levels).min()) if few and len(levels) > 1 else 0.0
     for rises, colour, side in ((True, RISING, -1), (False, FALLING, 1)):
-        branch = shown.kept & (shown.rises == rises)
-        rows = thinned(branch)
+        rows = thinned(shown.kept & (shown.rises == rises))
         moved = side * max(0.12 * step, DODGE * np.ptp(levels)) if step else 0.0
         moved = 0.0 if channel.key == "torque_Nm" else moved
         axes.plot(
             values[rows] + moved, np.clip(left[rows], -high, high), "o", ms=2.2, mew=0, color=colour,
             alpha=0.35, rasterized=True, clip_on=False,
         )  # fmt: skip
-        for sign, style in ((1, "-"), (-1, (0, (2.5, 1.5)))):
-            own = branch & (np.sign(shown.history.torque_Nm) == sign)
-            x, y = means(values[own], left[own], few)
-            axes.plot(
-                x + moved, y, color=colour, lw=1.8, ls=style if channel.key != "torque_Nm" else "-"
-            )
+        for sign, x, y in _lines(shown, channel, left, rises):
+            style = "-" if sign > 0 or channel.key == "torque_Nm" else (0, (2.5, 1.5))
+            axes.plot(x + moved, y, color=colour, lw=1.8, ls=style)
     axes.set_ylim(-high, high)
     # values that no row has would be read off the axis, where nothing says that points were moved
     axes.set_xlabel(f"{channel.label}{APART * bool(moved)}")
@@ -198,15 +194,17 @@ def _reach(shown: SweepPictureData, left: np.ndarray) -> float:
     lines = [
         np.abs(y).max(initial=0.0)
         for channel in shown.channels
-        for y in _lines(shown, channel, left)
+        for rises in (True, False)
+        for _, _, y in _lines(shown, channel, left, rises)
     ]
     return 1.15 * float(max(points, *lines))
 
 
-def _lines(shown: SweepPictureData, channel: PlotChannel, left: np.ndarray) -> Iterator[np.ndarray]:
-    """Of each branch the mean line of a panel."""
+def _lines(
+    shown: SweepPictureData, channel: PlotChannel, left: np.ndarray, rises: bool
+) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+    """Sign of the torque, and the mean line over the channel, of a branch's two halves."""
     few = len(np.unique(channel.values)) <= LEVELS
-    for rises in (True, False):
-        for sign in (1, -1):
-            own = shown.kept & (shown.rises == rises) & (np.sign(shown.history.torque_Nm) == sign)
-            yield means(channel.values[own], left[own], few)[1]
+    for sign in (1, -1):
+        own = shown.kept & (shown.rises == rises) & (np.sign(shown.history.torque_Nm) == sign)
+        yield sign, *means(channel.values[own], left[own], few)

@@ -38,10 +38,11 @@ def creep_explains(identified: Identification) -> bool:
     evidence, best = identified.search.evidence, identified.best
     old, history = evidence.columns, evidence.columns.rig.history
     lag = next((i for i in best.terms if evidence.terms[i].owner == RATE), None)
-    if lag is None or old.ahead is not None or holds(history) or ramp_s(history) == 0:
+    ramp = ramp_s(history)
+    if lag is None or old.ahead is not None or holds(history) or ramp == 0:
         return False
     like = evidence.terms[lag]
-    kept, ramp, long = evidence.kept, ramp_s(history), LONGEST * old.rig.duration_s
+    kept, long = evidence.kept, LONGEST * old.rig.duration_s
     torque = by_known_ways(history)
     made = []
     for low, power in product(SHORTEST, EXPONENTS):
@@ -59,10 +60,9 @@ def creep_explains(identified: Identification) -> bool:
             ],
         )
         search = Search(gaussian_evidence(columns, evidence.target, kept, evidence.noise))
-        count = len(beside)
-        scores = [
-            search.candidate([*range(count), k]).score for k in range(count, len(columns.terms))
-        ]
+        others = range(len(beside))
+        creeps = range(len(beside), len(columns.terms))
+        scores = [search.candidate([*others, k]).score for k in creeps]
         if best.score - max(scores) < RIVAL_EVIDENCE:
             return True
     return False
