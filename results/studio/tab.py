@@ -148,13 +148,13 @@ class Tab:
                         break
                 found = await worker.ask(question, wanted.tables)
                 late = self._wanted is not wanted
-                if question == FIRST_LOBES:
-                    wanted.begun.set()
                 if late and (isinstance(found, Fault) or question.startswith("profile")):
                     break
                 # the exact one may be there
                 if question != FIRST_STRESS or ROUGH not in wanted.found:
                     await self._tell(wanted, question, found)
+                if question == FIRST_LOBES:
+                    wanted.begun.set()
                 if late:  # told all the same: while a slider moves, every answer comes late
                     break
 
@@ -167,7 +167,9 @@ class Tab:
         if found:
             wanted.found |= found
             await self._send({"number": wanted.number, "done": question, **_said(wanted)})
-        if picture is not None:  # after the figures: to draw it takes the browser longer
+        if picture is not None:
+            if question == FIRST_STRESS:  # to draw it takes a browser longer than all first figures
+                await wanted.begun.wait()
             whose = {"number": wanted.number, "name": wanted.design.name}
             await self._send({"is": "picture", **whose})
             await self._send(picture)

@@ -1,4 +1,4 @@
-"""The queue of the page's workers: who has left takes no turn."""
+"""The queue of the page's workers: who has left takes no turn; and the order of what a tab gets."""
 
 from __future__ import annotations
 
@@ -106,5 +106,34 @@ def test_no_stress_is_refined_before_the_first_figures_are_there() -> None:
             await worker.until("two", "field wave_generator")
             await worker.until("two", "field shaft_torque")
             assert refined.isdisjoint(worker.noted)
+
+    with_client(check, worker=worker)
+
+
+class WithPicture(Asked):
+    """Answers the first stress with a picture."""
+
+    async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
+        answer = await super().ask(question, tables)
+        return {"picture": b"drawn"} if question == FIRST_STRESS else answer
+
+
+def test_the_first_stress_is_drawn_after_the_first_figures() -> None:
+    """To draw it keeps a browser without a graphics card from showing figures for 60 ms."""
+    worker = WithPicture(FIRST_LOBES)
+
+    async def check(client: aiohttp.test_utils.TestClient) -> None:
+        async with client.ws_connect("/live") as socket:
+            await heard(socket)
+            await socket.send_str(want(1, TABLES))
+            await worker.until(TABLES["name"], FIRST_LOBES)
+            await worker.until(TABLES["name"], FIRST_STRESS)
+            await asyncio.sleep(0.2)
+            worker.free.set()
+            got: list[str] = []
+            while "picture" not in got:
+                note = await heard(socket)
+                got.append(note.get("question", note["is"]))
+        assert got.index(FIRST_LOBES) < got.index("picture")
 
     with_client(check, worker=worker)
