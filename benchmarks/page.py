@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import linear_regression
 from typing import Any
 
-from cases import CASES, ROOT, Case
+from cases import ACCURACIES_PCT, CASES, ROOT, Case
 
 Row = Mapping[str, Any]
 LARGE = 100_000
@@ -162,7 +162,7 @@ def programs(r: Row, case: str) -> list[str]:
 
 
 def times(r: Row, case: Case) -> Iterable[str]:
-    for accuracy in case.accuracies_pct:
+    for accuracy in ACCURACIES_PCT:
         rows = [
             f"### To {accuracy:g} %\n",
             "| program | median (range) [s] | CPU [s] | own bound [%] | true error [%]"
@@ -200,7 +200,7 @@ def demands(r: Row) -> str:
         "|---|---|---|---|---|---|---|---|",
     ]
     for case in split(r)[0]:
-        for accuracy in case.accuracies_pct:
+        for accuracy in ACCURACIES_PCT:
             rows += [beside(r, case, accuracy, peer) for peer in programs(r, case.name)[1:]]
     rows += [
         f"\n{WEDGE}\n",
@@ -226,7 +226,7 @@ def beside(r: Row, case: Case, accuracy: float, program: str) -> str:
     if peer is None:
         return f"| {case.title}, {accuracy:g} % | {program} | not reached | | | | | yes |"
     good = [
-        t for a in case.accuracies_pct
+        t for a in ACCURACIES_PCT
         if (t := fastest(r, case.name, a, "flexspline")) is not None
         and t["worst_error_pct"] <= peer["worst_error_pct"]
     ]  # fmt: skip

@@ -21,7 +21,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from cases import CASES, LOADS, ROOT, Case
+from cases import ACCURACIES_PCT, CASES, LOADS, ROOT, Case
 from measure import cpu, repeated
 from page import page
 from programs import Setting, ours, peers, stiffness_command
@@ -90,11 +90,11 @@ def timed(python: str, result: dict[str, Any], steps: Path, count: int) -> list[
     long: dict[tuple, dict[str, Any]] = {}
     jobs: dict[tuple, Any] = {}
     for case in CASES:
-        for accuracy in case.accuracies_pct:
+        for accuracy in ACCURACIES_PCT:
             jobs[case.name, accuracy, "flexspline", ""] = lambda c=case, a=accuracy: ours(c, a)
             for peer in peers(python, case):
                 key = f"{case.name}, {peer.name}"
-                for words in settings(result["tuning"][key], case)[f"{accuracy:g}"]:
+                for words in settings(result["tuning"][key])[f"{accuracy:g}"]:
                     s = Setting(**words)
                     before = searched[key, str(s)]
                     if before["wall_s"] > LONG_S:

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from cases import QUARTER_DEG, Case
+from cases import ACCURACIES_PCT, QUARTER_DEG, Case
 from programs import Peer, Setting
 
 EDGES = (1.2, 0.8, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1, 0.08, 0.06)
@@ -31,15 +31,14 @@ def tuned(
 ) -> list[dict[str, Any]]:
     """Every run tried; `elsewhere`: those tried on another cup, to start from."""
     tried: list[dict[str, Any]] = []
-    accuracies = case.accuracies_pct
-    for series in searched(peer) if elsewhere is None else [candidates(elsewhere, accuracies)]:
+    for series in searched(peer) if elsewhere is None else [candidates(elsewhere)]:
         for setting in series:
             run = peer.run(case, setting, steps) | {"setting": asdict(setting)}
             if case.figure in run:
                 run["error_pct"] = 100 * (run[case.figure] / reference - 1)
             tried.append(run)
             print(f"{case.name} {peer.name} {setting}: {brief(run)}", flush=True)
-            reached = abs(run.get("error_pct", 100)) < min(accuracies)
+            reached = abs(run.get("error_pct", 100)) < min(ACCURACIES_PCT)
             over = run["wall_s"] > SLOW_S or "memory" in run.get("failed", "")
             if elsewhere is None and (reached or over):
                 break
@@ -59,18 +58,18 @@ def searched(peer: Peer) -> list[list[Setting]]:
     ]
 
 
-def candidates(tried: list[dict[str, Any]], accuracies_pct: tuple[float, ...]) -> list[Setting]:
+def candidates(tried: list[dict[str, Any]]) -> list[Setting]:
     found: list[Setting] = []
-    for accuracy in accuracies_pct:
+    for accuracy in ACCURACIES_PCT:
         good = [r for r in tried if abs(r.get("error_pct", 100)) < NEAR_ENOUGH * accuracy]
         best = sorted(good, key=lambda r: r["wall_s"])[:CANDIDATES]
         found += [Setting(**r["setting"]) for r in best]
     return list(dict.fromkeys(found))
 
 
-def settings(tried: list[dict[str, Any]], case: Case) -> dict[str, Any]:
+def settings(tried: list[dict[str, Any]]) -> dict[str, Any]:
     """The two fastest settings at each accuracy."""
-    return {f"{a:g}": fastest(tried, a) for a in case.accuracies_pct}
+    return {f"{a:g}": fastest(tried, a) for a in ACCURACIES_PCT}
 
 
 def fastest(tried: list[dict[str, Any]], accuracy_pct: float) -> list[dict[str, Any]]:

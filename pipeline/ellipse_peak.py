@@ -16,10 +16,10 @@ from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.peak_with_holes import (
-    PEAK_STRESS_TOLERANCE,
     BodyLoad,
     body_peak,
     peak_by_two_bodies,
+    peak_tolerance,
 )
 from flexspline.pipeline.wave_generator import coarse_ellipse, solid_ellipse
 
@@ -95,7 +95,9 @@ def _load(flexspline: PartModel) -> BodyLoad:
         flexspline.material,
     )
 
+    tolerance = peak_tolerance(flexspline.tolerance)
+
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
-        return ellipse_stress(outline, own, w0, apart, PEAK_STRESS_TOLERANCE, deadline)
+        return ellipse_stress(outline, own, w0, apart, tolerance, deadline)
 
     return BodyLoad("wave_generator_peak", "wave generator", solve, {"w0_mm": w0})

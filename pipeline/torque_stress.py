@@ -14,10 +14,10 @@ from flexspline.geometry.percent import percent
 from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.peak_with_holes import (
-    PEAK_STRESS_TOLERANCE,
     BodyLoad,
     body_peak,
     peak_by_two_bodies,
+    peak_tolerance,
 )
 from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.unfilleted_shaft import FILLETS, marked_unfilleted
@@ -61,9 +61,10 @@ def torque_field(model: PartModel) -> SolidField:
 def _load(model: PartModel) -> BodyLoad:
     torque, apart = model.context.design.load.torque_Nm, model.part.exclusion_mm
     own, driven = model.material, model.part.driven
+    tolerance = peak_tolerance(model.tolerance)
 
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
-        return torsion_stress(outline, own, driven, torque, apart, PEAK_STRESS_TOLERANCE, deadline)
+        return torsion_stress(outline, own, driven, torque, apart, tolerance, deadline)
 
     title = f"stress of the {model.name} under torque"
     return BodyLoad("torque_peak", title, solve, {"torque_Nm": torque})

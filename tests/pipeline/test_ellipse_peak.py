@@ -12,9 +12,11 @@ import pytest
 from example_files import EXAMPLES
 from finished_run import FinishedRun
 
-from flexspline.fea.types import SolidField, TetMesh
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.types import Elastic, SolidField, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import ellipse_peak as under_test
 from flexspline.pipeline import part_meshes, peak_with_holes
@@ -47,6 +49,19 @@ def part(folder: Path, monkeypatch: pytest.MonkeyPatch) -> PartModel:
     field = SolidField(**asked, peak=replace(whole, mises_MPa=SOLID_MPa))
     monkeypatch.setattr(under_test, "solid_ellipse", lambda asked: field)
     return cup
+
+
+def test_a_peak_is_as_close_as_K_is_asked_for(folder: Path) -> None:
+    cup = model(CUP, folder).part
+    w0, apart, own = CUP.w0_mm, cup.exclusion_mm, Elastic.of(cup.material)
+    finest = ellipse_stress(cup.without_holes().meridian, own, w0, apart, 0.0002).peak.mises_MPa
+    off_pct = []
+    for asked in (0.5, 0.1):
+        design = with_values(CUP, {"solver.tolerance_pct": asked, "flexspline.bolt_count": 0})
+        found = under_test.ellipse_peak(model(design, folder))
+        off_pct.append(abs(100 * (found.mises_MPa / finest - 1)))
+        assert off_pct[-1] < asked
+    assert off_pct[1] < off_pct[0] / 2  # edges of one more refinement are half as long
 
 
 def test_bodies_that_agree_answer_with_the_one_that_has_no_holes(part: PartModel) -> None:
