@@ -214,9 +214,10 @@ def demands(r: Row) -> str:
 WEDGE = (
     "Where it is not met: to 0.5 and 1 % of the cup with holes NGSolve's wedge, a sector of one hole cut by"
     " hand, is done before flexspline. flexspline takes 0.6 s to the bounds by two bodies of revolution (as"
-    " without holes), and then solves the solid model, which these bounds have to hold: another 0.4 s. That"
-    " second solution is a choice, made for its check and its field, and no limit: a peer has none. The"
-    " bounds alone would be faster here than the wedge at 0.5 %, and as fast at 1 %."
+    " without holes), of which start and imports are 0.4, and then solves the solid model, which these bounds"
+    " have to hold: another 0.4 s. A coarser one does not help: the shape's own lines ask for 2562 of its"
+    " 4206 elements, and with edges three times as long the command takes 0.84 s in place of 0.95. The bounds"
+    " alone would be faster than the wedge at 0.5 %, and as fast at 1 %."
 )
 
 

@@ -47,7 +47,7 @@ up to 16 % of what meshes of up to six times the elements had (five cups of 2 to
 
 
 def peak_tolerance(tolerance: float) -> float:
-    """Change of a peak over two refinements at which none follows, where K is asked for to ± `tolerance`·K."""
+    """Change of a peak over two refinements at which none follows; `tolerance` is that of K."""
     return min(PEAK_STRESS_TOLERANCE, max(CLOSEST_PEAK, tolerance))
 
 
