@@ -239,6 +239,7 @@ def test_no_total_is_taken_for_another(tmp_path):
     """Of two parts alone, or of the whole gear: the first page says it of each."""
     write_report(tmp_path / "r.pdf", content())
     first = re.sub(r"\s+", " ", PdfReader(tmp_path / "r.pdf").pages[0].extract_text())
+    first = first.replace("( ", "(")  # pypdf 5.1 reads a blank before a link
     for words in ("Totals and terms.", "is of flexspline and shaft alone", "of the whole gear (section 4)",
                   "wind-up (section 3)", "friction are in none of these",
                   "It twists by 237.0 arcsec between", "bearing in series"):  # fmt: skip
