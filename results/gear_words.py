@@ -51,12 +51,12 @@ PLAIN_NOTES: Mapping[PlainGearNote, str] = {
 
 def gear_warnings(curve: GearCurve) -> list[str]:
     """What makes it a gear that was not intended."""
-    return [_warning(each) for each in curve.warnings]
+    return [_warning(warning) for warning in curve.warnings]
 
 
 def gear_notes(curve: GearCurve) -> list[str]:
     """What was simplified."""
-    return [_note(each) for each in curve.notes]
+    return [_note(note) for note in curve.notes]
 
 
 def _warning(warning: GearWarning) -> str:
@@ -68,21 +68,21 @@ def _warning(warning: GearWarning) -> str:
                 "terms of the backlash sum do not apply"
             )
         case CuttingFlanks(shape, start, overlap, most, depth):
-            said = (
+            text = (
                 f"{shape} flanks cut into each other from {start:.0f}° off the major axis on, by up "
                 f"to {_rounded(overlap)} µm at {most:.0f}°: use the relieved shape or more clearance"
             )
             if depth is None:
-                return said
-            return f"{said}, or make the working depth less than {depth:.3g} mm"
+                return text
+            return f"{text}, or make the working depth less than {depth:.3g} mm"
         case LoadBeyondRated(load, rated):
             return (
                 f"load.torque_Nm = {load:g} is {load / rated:.3g} times the "
                 "rated torque: teeth and rim are not elastic there"
             )
         case EarlyEnd(end, torque, rated):
-            said = f"{ENDS[end]} at about {_rounded(torque)} N·m"
-            return f"{said}, below the rated torque of {plain_number(rated, 4)} N·m"
+            text = f"{ENDS[end]} at about {_rounded(torque)} N·m"
+            return f"{text}, below the rated torque of {plain_number(rated, 4)} N·m"
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
@@ -161,13 +161,13 @@ def _note(note: GearNote) -> str:
                 f"of the play is {_rounded(term)} arcsec"
             )
         case FallingStiffness(lower, higher, share, preload):
-            said = (
+            text = (
                 f"{lower} is {100 * share:.2g} % below {higher}: the gear is softer at larger torque, "
                 "where catalogues' gears are stiffer"
             )
             if not preload:
-                return said
-            return f"{said}. Here both flanks press without torque, and together they are stiffer than one"
+                return text
+            return f"{text}. Here both flanks press without torque, and together they are stiffer than one"
         case BucklingTube(torque, stress):
             return (
                 f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "

@@ -146,30 +146,30 @@ def present(job: Job, record: dict[str, Any], as_json: bool) -> None:
         show(table(record, job.folder, notes))
 
 
-def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
+def keep(job: Job, stiffnesses: Stiffnesses, as_json: bool) -> None:
     """result.json with the stiffnesses that there are; what they lack is told."""
     from flexspline.results.records import heading, stiffness_record
 
-    warn(job.design, found)
-    record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
+    warn(job.design, stiffnesses)
+    record = {**heading(job.design), **stiffness_record(job.design, stiffnesses, job.wall_s)}
     deliver(job, record, as_json)
 
 
 def warn(
-    design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
+    design: Design, stiffnesses: Stiffnesses, fields: Mapping[str, SolidField] | None = None
 ) -> None:
     """A line on stderr for each figure that missed its tolerance, or is missing."""
     from flexspline.results.warned import shortfalls
 
-    tell_all(shortfalls(design, found, fields))
+    tell_all(shortfalls(design, stiffnesses, fields))
 
 
 def tell_all(warnings: Iterable[str]) -> list[str]:
     """A line on stderr for each warning; the same again, for result.json."""
-    said = list(warnings)
-    for line in said:
+    lines = list(warnings)
+    for line in lines:
         tell(f"warning: {line}")
-    return said
+    return lines
 
 
 @contextmanager

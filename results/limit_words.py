@@ -53,15 +53,15 @@ def reason(limit: LinearLimit) -> str:
     why = limit.why
     match why:
         case ToothTwist(teeth):
-            said = f"the twist reaches one tooth, 360°/{teeth}"
+            text = f"the twist reaches one tooth, 360°/{teeth}"
         case ReachedStress():
-            said = f"{_place(why)} under torque alone reaches {_stress(why)}"
+            text = f"{_place(why)} under torque alone reaches {_stress(why)}"
         case _:
             assert_never(why)
     if not limit.peaks_solved:
-        return f"{said} ({NOT_SOLVED})"
+        return f"{text} ({NOT_SOLVED})"
     parts = joined((f"the {part}'s peak" for part in limit.not_counted), "and")
-    return f"{said} ({parts}, {BORDER}, not counted)" if parts else said
+    return f"{text} ({parts}, {BORDER}, not counted)" if parts else text
 
 
 def load_beyond(limit: LinearLimit, design: Design) -> Iterator[str]:

@@ -71,15 +71,15 @@ def _own(folder: Path, shared: bool) -> Iterator[bool]:
 def _there(folder: Path) -> Iterator[None]:
     """The folder with those above it while the context lasts; those that were missing go again."""
     missing = []
-    for each in (folder, *folder.absolute().parents):
-        if each.is_dir():
+    for path in (folder, *folder.absolute().parents):
+        if path.is_dir():
             break
-        missing.append(each)
+        missing.append(path)
     with ExitStack() as made:
-        for each in reversed(missing):
+        for path in reversed(missing):
             with suppress(FileExistsError):  # another command was faster, or `..` led back
-                each.mkdir()
-                made.callback(_removed, each)
+                path.mkdir()
+                made.callback(_removed, path)
         yield
 
 

@@ -130,8 +130,8 @@ EXTENDS: Mapping[DoingKind, str] = {
 
 def doing_words(doing: Doing) -> str:
     """What to do."""
-    said = DOING[doing.kind].format(torques=", ".join(f"{t:g}" for t in doing.torques_Nm))
-    return said + _rated(doing) if doing.kind in BEYOND else said
+    words = DOING[doing.kind].format(torques=", ".join(f"{t:g}" for t in doing.torques_Nm))
+    return words + _rated(doing) if doing.kind in BEYOND else words
 
 
 def _rated(doing: Doing) -> str:
@@ -144,11 +144,11 @@ def _rated(doing: Doing) -> str:
     return f", within {rated}"
 
 
-def why(after: NextMeasurement, kind: MeasurementKind, found: Iterable[NamedCause] = ()) -> str:
-    """What to measure next and why, of the kind of measurement that was diagnosed and the causes `found`."""
+def why(after: NextMeasurement, kind: MeasurementKind, causes: Iterable[NamedCause] = ()) -> str:
+    """What to measure next and why; `kind` of the diagnosed measurement, `causes` that were identified."""
     if after.aim == "more_data" and after.doing is not None:
         return doing_words(after.doing)
-    sizes = {c.id: c.magnitude for c in found}
+    sizes = {c.id: c.magnitude for c in causes}
     titles = [title_of(c, sizes.get(c, 0.0)) for c in after.causes]
     words = {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind]
     return words(after, titles)
@@ -171,8 +171,8 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.doing is None or not after.separation:  # nothing was computed
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
         return f"to distinguish {separated}: {doing}"
-    apart = f"their predictions then differ by {after.separation:.0f} times the noise"
-    return f"{doing_words(after.doing)}: {apart}; it distinguishes {separated}"
+    difference = f"their predictions then differ by {after.separation:.0f} times the noise"
+    return f"{doing_words(after.doing)}: {difference}; it distinguishes {separated}"
 
 
 def _alone(channel: str) -> str:
@@ -184,16 +184,16 @@ def _of_end_points(after: NextMeasurement, titles: Sequence[str]) -> str:
         return "closed torque sweeps show the whole curve, not its ends"
     every = ", ".join(titles)
     reveals = known_causes()[after.causes[0]].reveals
-    here = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
+    action = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
     if after.aim != "separate":
-        return f"{here}; it would confirm or rule out {every}"
-    apart = (
+        return f"{action}; it would confirm or rule out {every}"
+    difference = (
         "the two of them that are nearest to each other then differ by "
         f"{after.separation:.0f} times the noise"
     )
     if after.same_points is not None:
-        apart += f" (end points at the same torques: {after.same_points:.1f})"
-    return f"{here}; it distinguishes {every}: {apart}"
+        difference += f" (end points at the same torques: {after.same_points:.1f})"
+    return f"{action}; it distinguishes {every}: {difference}"
 
 
 def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
@@ -207,18 +207,16 @@ def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.dimension_mm is None:
         return f"another fixture, to distinguish {separated}"
     made, drawn = after.dimension_mm
-    apart = (
+    proposal = (
         f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
         f"to each other then differ by {after.separation:.1f} times the noise"
     )
     if after.separation**2 >= 2 * RIVAL_EVIDENCE:
-        return f"{apart}; it distinguishes {separated}"
+        return f"{proposal}; it distinguishes {separated}"
     needed = 2 * RIVAL_EVIDENCE / max(after.separation, LEAST_SEPARATION) ** 2
     if needed > MOST_SPECIMENS:
-        return (
-            f"{apart}, too little to distinguish {separated}; no other dimension tried does better"
-        )
-    return f"{apart}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
+        return f"{proposal}, too little to distinguish {separated}; no other dimension tried does better"
+    return f"{proposal}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
 
 
 def _one_from_others(titles: Sequence[str]) -> str:

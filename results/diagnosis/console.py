@@ -38,8 +38,8 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     widths = [
         max(len(cell) for cell in column) + BETWEEN for column in list(zip(*cells, strict=True))[:2]
     ]
-    for cause, found in zip(outcome.causes, cells, strict=True):
-        lines += row(found, widths)
+    for cause, texts in zip(outcome.causes, cells, strict=True):
+        lines += row(texts, widths)
         if cause.alternatives:
             lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:

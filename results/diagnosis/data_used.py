@@ -104,25 +104,25 @@ def calibrated_sentences(
     )
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
-        found = calibration.compliance
-        if slope is not None and _is_held(found, prediction, slope):
-            compliance = _held(found, prediction, slope)
+        measured = calibration.compliance
+        if slope is not None and _is_held(measured, prediction, slope):
+            compliance = _held(measured, prediction, slope)
         else:
-            compliance = _against(found, prediction.compliance, prediction.compliance_std)
+            compliance = _against(measured, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
     found_any = outcome.causes or outcome.unexplained
     beside = ", without the effects found" if calibration.beside_effects and found_any else ""
-    said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
+    text = f"Calibrated on this record{beside}: {'; '.join(parts)}."
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
     if elastic and calibration.compliance is not None:
         titles = joined((title_of(c.id, c.magnitude) for c in elastic), "and")
-        said += f" The measured slope is this compliance and the effect of: {titles}."
+        text += f" The measured slope is this compliance and the effect of: {titles}."
     if calibration.gap_arcsec.value < 0:
-        said += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
+        text += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
     if outcome.unexplained:
-        said += " An effect is unexplained; it may have changed them by more than the stated ±."
-    return said
+        text += " An effect is unexplained; it may have changed them by more than the stated ±."
+    return text
 
 
 def own_slope(diagnosis: Diagnosis) -> SlopeRatio | None:
@@ -147,16 +147,16 @@ def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
 
 def _against(measured: Estimate, simulated: float, std: float, as_open: str = NOT_NARROWED) -> str:
     """A value beside the simulated one; `as_open` is said where the record leaves it as open."""
-    found = plus_minus(measured.value, measured.std)
+    text = plus_minus(measured.value, measured.std)
     if not std:
-        return f"{found} (simulated {simulated:.4g})"
+        return f"{text} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
-            return f"{found} (as simulated: {as_open})"
+            return f"{text} (as simulated: {as_open})"
         if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
-            return f"{found} (simulated {plus_minus(simulated, std)}; {as_open})"
+            return f"{text} (simulated {plus_minus(simulated, std)}; {as_open})"
     off = signed((measured.value - simulated) / std, 1)
-    return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
+    return f"{text} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 
 
 def rows_used(prepared: PreparedSweep) -> str:
@@ -180,16 +180,16 @@ def kinds_left_out(counts: RowCounts) -> list[tuple[str, int]]:
 def row_notes(prepared: PreparedSweep) -> list[str]:
     """Rows used, and rows left out by their reason."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
-    found = []
+    notes = []
     if averaging is not None:
         left = averaging.rows_read - averaging.rows_averaged
-        found.append(
+        notes.append(
             f"{grouped(averaging.rows_read, 0)} rows were read and averaged to "
             f"{grouped(counts.total, 0)} means of neighbouring rows; "
             f"{grouped(left, 0)} rows (spikes, surplus cycles) are in no mean"
         )
     what = "rows" if averaging is None else "means"
-    found.append(
+    notes.append(
         f"{rows_used(prepared)}{' rows' * (averaging is None)} were used for identification"
     )
     others = ", ".join(
@@ -203,13 +203,13 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
     )
     if counts.crossing:
         crossing = f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)}"
-        found.append(
+        notes.append(
             f"{crossing} (backlash crossing) were not used for identification"
             + (f"; nor were {others}" if others else "")
         )
     elif others:
-        found.append(f"{what} not used for identification: {others}")
-    return found
+        notes.append(f"{what} not used for identification: {others}")
+    return notes
 
 
 def _at_the_crossing(prepared: PreparedSweep) -> str:

@@ -27,9 +27,9 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
             "uncertainty is its prior); the rest differs from unit to unit"
         )
     mids = analysis.mids
-    told = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
+    positions = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
     notes.append(
-        f"mid positions {told} arcsec: the symmetric model predicts 0, but each unit's angle zero is "
+        f"mid positions {positions} arcsec: the symmetric model predicts 0, but each unit's angle zero is "
         "unknown, so the mid positions cannot confirm or reject this; stiffness that differs with "
         f"direction could move one by at most {mids.asymmetry_reach_arcsec:.1f} arcsec"
         + ("" if analysis.several_torques else ", and only a second torque would show it")

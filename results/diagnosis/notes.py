@@ -55,9 +55,9 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
         f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction, diagnosis.causes),
     )  # fmt: skip
-    found = diagnosis.gear_inputs
-    if found is not None:
-        inputs = gear_inputs_notes(found)
+    gear_inputs = diagnosis.gear_inputs
+    if gear_inputs is not None:
+        inputs = gear_inputs_notes(gear_inputs)
     elif bend is not None and diagnosis.sweep is not None:
         inputs = (NOT_SOUGHT,)
     else:
@@ -84,10 +84,10 @@ def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
             f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
         )
     part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
-    said = f"; of this bend {part} is in this record"
+    text = f"; of this bend {part} is in this record"
     if HARDENING in (c.id for c in causes):
-        said += f". Other curvature is counted as {title_of(HARDENING)}"
-    return said
+        text += f". Other curvature is counted as {title_of(HARDENING)}"
+    return text
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
@@ -120,7 +120,7 @@ def _ratios(causes: Iterable[NamedCause]) -> list[str]:
 
 def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> list[str]:
     """Of what grows at another rate later, that its size is the mean over the record."""
-    found = []
+    lines = []
     for c in causes:
         shapes = [e.shape for e in model.elements.get(c.id, ())] if model else []
         if c.id not in (WEAR, DRIFT):
@@ -133,8 +133,8 @@ def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> li
             how = "it quickens"
         else:
             continue
-        found.append(f"size of {title_of(c.id)}: mean over the record; {how}")
-    return found
+        lines.append(f"size of {title_of(c.id)}: mean over the record; {how}")
+    return lines
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -159,34 +159,34 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def record_notes(sweep: Sweep) -> list[str]:
     """Channels of the file that stand still, and rows that it has twice."""
-    found = []
+    remarks = []
     if sweep.history.time_s is None and sweep.read_as.column("time_s") is not None:
-        found.append("time is the same in all rows: taken as not recorded")
+        remarks.append("time is the same in all rows: taken as not recorded")
     if lines := constant_lines(sweep):
-        found.append(
+        remarks.append(
             f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: did the "
             "channels drop out? Those rows count as measured; remove them if so"
         )
     if copies := copied_rows(sweep):
-        found.append(
+        remarks.append(
             f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
             "appended to itself? They count as measured again, which makes the standard deviations too small"
         )
-    return found
+    return remarks
 
 
 def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> list[str]:
     prepared = explained.prepared
-    found = row_notes(prepared)
-    found += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
-    found += _rounding_notes(explained)
-    found += _noise_notes(explained)
-    found += _cancelling_notes(explained)
-    found += lag_notes(explained.identified)
-    found += drift_notes(causes)
+    lines = row_notes(prepared)
+    lines += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
+    lines += _rounding_notes(explained)
+    lines += _noise_notes(explained)
+    lines += _cancelling_notes(explained)
+    lines += lag_notes(explained.identified)
+    lines += drift_notes(causes)
     if prepared.sweep.read_as.ignored:
-        found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
-    return found
+        lines.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
+    return lines
 
 
 def _noise_notes(explained: ExplainedSweep) -> list[str]:
@@ -215,28 +215,28 @@ def _cancelling_notes(explained: ExplainedSweep) -> list[str]:
 
 def _rounding_notes(explained: ExplainedSweep) -> list[str]:
     """That a reading is coarse, where its rounding is more than the noise."""
-    found = []
+    lines = []
     angle = rounding_of_angle(explained.prepared, explained.identified.fit)
     if angle.is_seen:
-        found.append(
+        lines.append(
             f"the angle is read in steps of {angle.step:.3g} arcsec: the rounding error, "
             f"{angle.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the angle; "
             "more noise, or a finer encoder, would reduce it"
         )
     torque = rounding_of_torque(explained.prepared, explained.identified.fit)
     if torque.is_seen:
-        found.append(
+        lines.append(
             f"the torque is read in steps of {torque.step:.3g} N·m: the rounding error, "
             f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
-    return found
+    return lines
 
 
 def _scale_notes(
     causes: Iterable[NamedCause], calibration: Calibration | None, prediction: Prediction
 ) -> list[str]:
     """What looks like an elastic part: of an angle's wrong scale, that the gap has its factor too."""
-    found = []
+    lines = []
     for c in causes:
         if c.id != SERIES or calibration is None:
             continue
@@ -244,16 +244,16 @@ def _scale_notes(
         if c.or_scale == "angle":
             gap = calibration.gap_arcsec.value / prediction.gap_arcsec
             slope = 1 + c.magnitude / 100
-            found.append(
+            lines.append(
                 f"{title}: the gap is {gap:.3g} times and the compliance {slope:.3g} times the simulated "
                 "one, as if the angle were read with a wrong scale"
             )
         else:
             material = "softer" if c.magnitude > 0 else "stiffer"
-            found.append(
+            lines.append(
                 f"{title}: a wrong scale of the torque reading or a {material} material looks the same"
             )
-    return found
+    return lines
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
@@ -271,21 +271,21 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
     noise = f"the noise of one stiffness is taken as {100 * float(chosen.noise.mean()):.2g} %"
     if analysis.race.data.std is None:
         noise += ", from the scatter, as the file states none"
-    found = [noise]
+    lines = [noise]
     if analysis.part_guessed_by is not None:
         part = analysis.part[0]
-        found.insert(
+        lines.insert(
             0,
             f"the file has no column part: taken as {part}, by {GUESSED_BY[analysis.part_guessed_by]}",
         )
     if YOUNGS_MODULUS not in chosen.causes:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
-        found.append(f"Young's modulus calibrated by {change} % within its uncertainty")
+        lines.append(f"Young's modulus calibrated by {change} % within its uncertainty")
     for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
         s = term.sensitivity
         if s is not None and term.owner not in chosen.causes:
             change = f"{value:+.2g}".replace("-", "−")
-            found.append(
+            lines.append(
                 f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm of "
                 "ISO 2768-m and not a finding"
             )
@@ -294,5 +294,5 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
         if analysis.with_holes
         else "the given stiffness times the hole-free model's ratio"
     )
-    found.append(f"rows are {how}; changes with a dimension come from the hole-free model")
-    return found
+    lines.append(f"rows are {how}; changes with a dimension come from the hole-free model")
+    return lines

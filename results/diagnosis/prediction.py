@@ -55,8 +55,8 @@ def predict_and_write(
         record = {"angle_arcsec": angle.tolist()}
         return as_json(record | ({"angle_std_arcsec": std.tolist()} if std is not None else {}))
     off = "" if std is None else f", ± {std.min():.3g} to {std.max():.3g} (one standard deviation)"
-    said = f"{len(angle)} row{'s' * (len(angle) != 1)}, {angle.min():.6g} to {angle.max():.6g} arcsec{off}"
-    return f"{said}\n{folder / PREDICTION}"
+    summary = f"{len(angle)} row{'s' * (len(angle) != 1)}, {angle.min():.6g} to {angle.max():.6g} arcsec{off}"
+    return f"{summary}\n{folder / PREDICTION}"
 
 
 def with_columns(

@@ -66,10 +66,10 @@ def _by_unit(apart: UnitsApart) -> Record:
     units = [
         {
             "unit": name,
-            "verdict": "insufficient" if own is None else own.verdict,
-            "causes": [_cause(c) for c in own.causes] if own else [],
+            "verdict": "insufficient" if decision is None else decision.verdict,
+            "causes": [_cause(c) for c in decision.causes] if decision else [],
         }
-        for name, own in apart.decisions.items()
+        for name, decision in apart.decisions.items()
     ]
     return {"unit_shown": apart.unit, "by_unit": units}
 

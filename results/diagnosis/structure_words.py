@@ -158,38 +158,38 @@ def _form(form: UnnamedForm, channel: str) -> str:
         return f"a {form.kind} over {channel}"  # a dimension
     if form.kind == "one_sided" and form.at_Nm is not None:
         return _one_sided(form.at_Nm, form.more_arcsec)
-    said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
+    words = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
     if form.at_Nm is not None:
         place = signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2)) if form.at_Nm else "0"
-        return f"{said} near {place} N·m"
+        return f"{words} near {place} N·m"
     if not form.number:
-        return said
-    return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")
+        return words
+    return f"{words} of unit {form.name or form.number}" + "'s own" * (channel == "unit")
 
 
 def _one_sided(at_Nm: float, more_arcsec: float | None) -> str:
     """On which side, from which torque on, and how much it is at the largest torque."""
     side = "positive" if copysign(1.0, at_Nm) > 0 else "negative"
-    said = FORMS["one_sided", "torque_Nm"].replace("torque of one sign", f"{side} torque")
+    words = FORMS["one_sided", "torque_Nm"].replace("torque of one sign", f"{side} torque")
     if at_Nm:
-        said += f", from {signed(at_Nm, decimals_for(abs(at_Nm), 2))} N·m on"
+        words += f", from {signed(at_Nm, decimals_for(abs(at_Nm), 2))} N·m on"
     if more_arcsec is None:
-        return said
+        return words
     more = "more" if more_arcsec > 0 else "less"
-    return f"{said}: {abs(more_arcsec):.2g} arcsec {more} twist at the largest torque"
+    return f"{words}: {abs(more_arcsec):.2g} arcsec {more} twist at the largest torque"
 
 
 def _backward(loop: BackwardLoop) -> str:
     which = "the loops run" if loop.rate_Nm_per_s is None else (
         f"the quickest loops, at {loop.rate_Nm_per_s:.3g} N·m/s, run"
     )  # fmt: skip
-    said = (
+    words = (
         f"{which} backwards: in the mean of {loop.loops} the angle is {loop.width_arcsec:.3g} arcsec lower "
         "while torque falls than while it rises, so that the loop would release energy, which a passive gear "
         f"cannot; most likely {_likely(loop)}"
     )
     others = joined((UNRECORDED[channel] for channel in loop.unrecorded), "and")
-    return f"{said}. Other possible causes, not recorded: {others}" if others else said
+    return f"{words}. Other possible causes, not recorded: {others}" if others else words
 
 
 def _likely(loop: BackwardLoop) -> str:

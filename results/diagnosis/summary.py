@@ -52,10 +52,10 @@ def summary(diagnosis: Diagnosis) -> str:
     """
     far = _far_off(diagnosis)
     if far and diagnosis.verdict == "consistent":
-        said = f"The curve has the simulated form, but the {far}."
+        text = f"The curve has the simulated form, but the {far}."
     else:
-        said = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
-    return said + slope_hint_words(diagnosis)
+        text = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
+    return text + slope_hint_words(diagnosis)
 
 
 def _far_off(diagnosis: Diagnosis) -> str:
@@ -150,38 +150,38 @@ def left_out(causes: Sequence[NamedCause]) -> str:
 def _listed(causes: Sequence[NamedCause]) -> str:
     """Each with its size; a cause that units have in different sizes is there more than once."""
     ids = [c.id for c in causes]
-    return "; ".join(_said(c, "only " * (ids.count(c.id) == 1)) for c in causes)
+    return "; ".join(_with_magnitude(c, "only " * (ids.count(c.id) == 1)) for c in causes)
 
 
-def _said(cause: NamedCause, only: str) -> str:
+def _with_magnitude(cause: NamedCause, only: str) -> str:
     where = f" ({only}{listed(cause.own_units, 'units')})" if cause.own_units else ""
     return f"{cause_title(cause)}, {magnitude_words(cause)}{where}"
 
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
-    told = []
+    clauses = []
     for place, c in enumerate(causes):
-        said = {e.id for e in causes[:place] if c.id in e.alternatives}
-        others = [other for other in c.alternatives if other not in said]
+        named = {e.id for e in causes[:place] if c.id in e.alternatives}
+        others = [other for other in c.alternatives if other not in named]
         if others:
             whom = joined(map(title_of, others), "or")
-            told.append(f"{cause_title(c)} cannot be distinguished from {whom}")
-    told += [
+            clauses.append(f"{cause_title(c)} cannot be distinguished from {whom}")
+    clauses += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
         if not is_significant(c) and not c.alternatives
     ]
-    return "; ".join(told)
+    return "; ".join(clauses)
 
 
 def _beside(causes: Sequence[NamedCause]) -> str:
     """Causes without a rival, beside others that have one, each with how sure it is; "" of none."""
-    told = [
-        f"{_said(c, 'only ')} ({sure_words(c)})"
+    identified = [
+        f"{_with_magnitude(c, 'only ')} ({sure_words(c)})"
         for c in causes
         if not c.alternatives and is_significant(c)
     ]
-    return f" Also identified: {'; '.join(told)}." if told else ""
+    return f" Also identified: {'; '.join(identified)}." if identified else ""
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
@@ -194,8 +194,8 @@ def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
         return f"There is structure that no known cause explains: {what}.{known}"
     broken = [structure_words(u) for u in outcome.unexplained if u.limit]
     if broken:
-        said = f"No cause is named: {'; '.join(broken)}"
-        return said if said.endswith("?") else f"{said}."
+        text = f"No cause is named: {'; '.join(broken)}"
+        return text if text.endswith("?") else f"{text}."
     channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
     where = ", ".join(channels) or "the data"
     return f"There is structure in {where} that no known cause explains.{known}"

@@ -28,29 +28,29 @@ WITHOUT = {
 
 def unseen_notes(history: History, band_Nm: float, causes: Iterable[NamedCause] = ()) -> list[str]:
     """Sides, directions, rates and channels that the record lacks; `band_Nm` is the gap's crossing."""
-    found = []
+    notes = []
     torque = history.torque_Nm
     if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < LEAST_OTHER_WAY:
-        found.append(
+        notes.append(
             "torque acts one way only: the record does not show the gap, a shifted torque reading, or a "
             "stiffness that differs between directions; sweep to −T as well"
         )
     direction = direction_of_loading(history)
     if min(np.mean(direction > 0), np.mean(direction < 0)) < LEAST_OTHER_WAY:
-        found.append(
+        notes.append(
             "torque never returns: the record does not show friction; sweep back to zero as well"
         )
     elif history.time_s is not None and at_one_rate_on_ramps(history):
-        told = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
+        distinguished = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
         lag = (
             "only the form of its loop distinguishes friction from a lag"
-            if told
+            if distinguished
             else "a lag makes the same loop as friction"
         )
-        found.append(f"all cycles run at one rate: {lag}; repeat one at 1/{FASTER:g} of the rate")
-    found += [
+        notes.append(f"all cycles run at one rate: {lag}; repeat one at 1/{FASTER:g} of the rate")
+    notes += [
         f"{channel_words(channel)} was not recorded: {leaves_open}"
         for channel, leaves_open in WITHOUT.items()
         if getattr(history, channel) is None
     ]
-    return found
+    return notes

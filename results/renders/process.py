@@ -90,10 +90,12 @@ class DrawingProcess:
                 self._folder = tempfile.TemporaryDirectory(
                     prefix="flexspline-picture-", ignore_cleanup_errors=True
                 )
-            asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
+            packed_in, made = (
+                Path(self._folder.name) / n for n in ("arguments.npz", "picture.png")
+            )
             made.unlink(missing_ok=True)
-            asked.write_bytes(content)
-        question = {"function": name, "asked": str(asked), "made": str(made)}
+            packed_in.write_bytes(content)
+        question = {"function": name, "arguments": str(packed_in), "made": str(made)}
         answer = self._exchange(json.dumps(question))
         if answer is None and self._closed:
             raise NotDrawnError(STOPPED)
@@ -132,10 +134,10 @@ class DrawingProcess:
     def _running(self) -> subprocess.Popen[str]:
         if self._process is None:
             assert self._folder is not None
-            with (Path(self._folder.name) / "said.txt").open("wb") as said:
+            with (Path(self._folder.name) / "stderr.txt").open("wb") as stderr:
                 self._process = subprocess.Popen(
                     child_command(__name__, "serve"),
-                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=stderr, text=True,
                 )  # fmt: skip
         return self._process
 
@@ -151,9 +153,13 @@ class DrawingProcess:
         how = f"exit status {status}"
         with contextlib.suppress(ValueError):
             how = signal.Signals(-status).name
-        said = (Path(self._folder.name) / "said.txt").read_text("utf-8", "replace").split("\n")
+        written = (Path(self._folder.name) / "stderr.txt").read_text("utf-8", "replace").split("\n")
         last = next(
-            (f", {one_line(w, 120)}" for s in reversed(said) if (w := _VTK_LOG.sub("", s).strip())),
+            (
+                f", {one_line(w, 120)}"
+                for s in reversed(written)
+                if (w := _VTK_LOG.sub("", s).strip())
+            ),
             "",
         )
         ended = f"the process that draws ended ({how}{last})"
@@ -180,8 +186,8 @@ def serve() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: an end without a traceback
     answers = private_stdout("utf-8")  # the answers alone
     for line in sys.stdin:
-        asked = json.loads(line)
-        print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
+        question = json.loads(line)
+        print(json.dumps({"reason": _drawn(**question)}), file=answers, flush=True)
 
 
 _known: deque[tuple[bytes, tuple[Any, ...]]] = deque(maxlen=2)
@@ -197,12 +203,12 @@ def _arguments(content: bytes) -> tuple[Any, ...]:
     return _known[-1][1]
 
 
-def _drawn(function: str, asked: str, made: str) -> str:
+def _drawn(function: str, arguments: str, made: str) -> str:
     """Draw; why it failed, or ""."""
     module, _, name = function.partition(":")
     try:
         write = getattr(import_module(module), name)
-        write(Path(made), *_arguments(Path(asked).read_bytes()))
+        write(Path(made), *_arguments(Path(arguments).read_bytes()))
     except ComputationError as error:
         return one_line(str(error))
     except Exception as error:  # whatever a library raises costs its own picture

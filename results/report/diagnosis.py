@@ -178,7 +178,7 @@ def _model(diagnosis: Diagnosis) -> Iterable[Block]:
 
 
 def _notes(diagnosis: Diagnosis) -> Iterable[Block]:
-    found = notes(diagnosis)
-    if found:
+    lines = notes(diagnosis)
+    if lines:
         yield Heading("Notes")
-        yield Bullets(tuple(map(capital, found)), small=True)
+        yield Bullets(tuple(map(capital, lines)), small=True)

@@ -29,7 +29,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
     """Pairs of heading and text."""
     b = content.backlash
     case = content.design.solver.load_case
-    found = [
+    pairs = [
         [
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
@@ -62,17 +62,19 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         ],
     ]
     if content.linear_limit is not None:
-        found.append(["Largest torque", _linear(content, content.linear_limit)])
+        pairs.append(["Largest torque", _linear(content, content.linear_limit)])
     peaks = (content.wave_generator_peak or content.flexspline_peak, content.shaft_peak)
     stated = [
         f"{part}: {p.excluded}" for part, p in zip(PART_NAMES, peaks, strict=True) if p is not None
     ]
     if stated:
-        own = content.flexspline_peak
+        flexspline_peak = content.flexspline_peak
         why = (
-            f"Of the flexspline under torque: {own.stands_for}. " if own and own.stands_for else ""
+            f"Of the flexspline under torque: {flexspline_peak.stands_for}. "
+            if flexspline_peak and flexspline_peak.stands_for
+            else ""
         )
-        found.append(
+        pairs.append(
             [
                 "Peak stress",
                 f"{why}Left out of the peaks: "
@@ -83,7 +85,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
                 + f"“{BORDER}” says that {MEANING}.",
             ]
         )
-    return found
+    return pairs
 
 
 def fatigue(content: ReportContent) -> str:
@@ -93,23 +95,23 @@ def fatigue(content: ReportContent) -> str:
     if limit is None or peak is None:
         return ""
     stress = quantity("wave_generator_peak_mises_MPa").with_unit(peak.mises_MPa)
-    said = f"The stress of the wave generator's ellipse alternates twice per turn: its peak of {stress}"
+    sentence = f"The stress of the wave generator's ellipse alternates twice per turn: its peak of {stress}"
     share = share_of_limit(peak, material)
     if share is not None:
         beyond = " It is above that limit." if share > 1 else ""
         return (
-            f"{said} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} Surface, "
-            "size, mean stress, tooth roots and the torque's stress are not considered."
+            f"{sentence} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} "
+            "Surface, size, mean stress, tooth roots and the stress from the torque are not considered."
         )
     if peak.mises_MPa > limit:
         return (
-            f"{said} is above the stated fatigue limit of {limit:g} MPa, and towards the edge nearby the "
+            f"{sentence} is above the stated fatigue limit of {limit:g} MPa, and towards the edge nearby the "
             "stress rises further."
         )
     return (
-        f"{said} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge, towards "
-        "which the stress rises further. So it does not show whether the part stays below the stated fatigue "
-        f"limit of {limit:g} MPa."
+        f"{sentence} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge. The "
+        "stress rises further towards this edge, so the peak does not show whether the part stays below the "
+        f"stated fatigue limit of {limit:g} MPa."
     )
 
 
@@ -117,22 +119,22 @@ def _ellipse(content: ReportContent) -> str:
     """What the ellipse assumes of the seat, and how the stress moves with its width."""
     design, half = content.design, content.half_seat_peak
     width = design.flexspline.ring_width_mm
-    said = (
+    text = (
         f"A given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, that "
         "the seat follows without friction and without lifting off. In load case “lobes” the "
         "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
         f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. This sets the stress."
     )
     if content.wave_generator_peak is None:
-        return said
+        return text
     if why := content.wave_generator_peak.stands_for:
-        said += f" The peak: {why}."
+        text += f" The peak: {why}."
     if half is None:
-        return said
+        return text
     stress = quantity("wave_generator_peak_half_seat_mises_MPa")
     change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
     return (
-        f"{said} On a seat half as wide, {width / 2:g} mm in the ring's middle, the peak would be "
+        f"{text} On a seat half as wide, {width / 2:g} mm in the ring's middle, the peak would be "
         f"{stress.with_unit(half.mises_MPa)} ({signed(change, 0)} %; bolt holes left out)."
     )
 

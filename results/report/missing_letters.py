@@ -57,11 +57,11 @@ def printable(
 def notice(count: int) -> dict[str, Any]:
     """The block that says so, as `payload_of` has it."""
     letters = "A letter" if count == 1 else f"{count} different letters"
-    said = (
+    text = (
         f"{letters} of names or notes cannot be printed, as no font on this computer has them; "
         "each is written by its code. report.html and the files have them."
     )
-    spans = [{"style": "", "text": said, "target": ""}]
+    spans = [{"style": "", "text": text, "target": ""}]
     return {"kind": "callout", "tone": "amber", "heading": "", "text": spans, "items": []}
 
 

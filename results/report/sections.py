@@ -51,7 +51,7 @@ def run_document(content: ReportContent) -> Document:
     """The whole report."""
     roomy = _letters(content) <= ROOMY
     sections = (
-        (_summary(content), _asked(content), _answer(content)),
+        (_summary(content), _task(content), _answer(content)),
         (budget(content, roomy),),
         (whole_gear(content, roomy),),
         (_stress(content, roomy),),
@@ -101,7 +101,7 @@ def _summary(content: ReportContent) -> Iterable[Block]:
     yield Paragraph(totals_and_terms(content))
 
 
-def _asked(content: ReportContent) -> Iterable[Block]:
+def _task(content: ReportContent) -> Iterable[Block]:
     yield Heading("What was asked")
     yield Paragraph(
         plain("Torsional stiffness, stress, and backlash at the output between ")
@@ -145,10 +145,10 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     if any(name.startswith("K_b_lobes") for name in content.stiffnesses):
         yield Paragraph(_which(content.design.solver.load_case))
     if count := len(content.warnings):
-        said = "warning" if count == 1 else f"{count} warnings"
+        warnings = "warning" if count == 1 else f"{count} warnings"
         yield Callout(
             "amber",
-            text=bold(f"Read the {said} in ")
+            text=bold(f"Read the {warnings} in ")
             + ref("warnings")
             + bold(" before using these figures."),
         )
@@ -178,7 +178,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
         "Flexspline on the wave generator: the ellipse, magnified as stated in the picture, with its "
         "von Mises stress."
     )
-    found = [
+    pictures = [
         *shown(
             content,
             roomy,
@@ -190,9 +190,9 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
         *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
         *shown_charts(content, roomy, "stress"),
     ]
-    if found:
+    if pictures:
         yield Heading("Stress and deformation")
-        yield from found
+        yield from pictures
         yield Paragraph(
             plain("Stresses are averaged at the nodes. Colours end at the peak that ")
             + ref("answers")

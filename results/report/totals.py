@@ -18,7 +18,7 @@ _FIRST = quantity("K1_Nm_per_rad")
 
 def totals_and_terms(content: ReportContent) -> Words:
     """The series stiffness, the backlash sum and, where it was found, K1 of the whole gear."""
-    said = (
+    text = (
         bold("Totals and terms. ")
         + symbol(_SERIES.symbol)
         + plain(
@@ -34,9 +34,9 @@ def totals_and_terms(content: ReportContent) -> Words:
     )
     curve = content.gear
     if curve is None:
-        return said + plain("Neither includes bolts, housing or friction.")
+        return text + plain("Neither includes bolts, housing or friction.")
     return (
-        said
+        text
         + symbol(_FIRST.symbol)
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")

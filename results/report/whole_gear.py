@@ -83,8 +83,8 @@ def _figure(entry: Quantity, value: float) -> tuple[str | Words, ...]:
 
 
 def _shares(curve: GearCurve) -> Words:
-    each = ", ".join(f"{100 * v:.0f} % {part}" for part, v in curve.compliance_shares.items())
-    return plain(f"Of its compliance at rated torque: {each}.")
+    shares = ", ".join(f"{100 * v:.0f} % {part}" for part, v in curve.compliance_shares.items())
+    return plain(f"Of its compliance at rated torque: {shares}.")
 
 
 def _beside(total: Backlash, curve: GearCurve) -> Table:
@@ -93,13 +93,13 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
     load = "" if curve.terms_torque_Nm is None else f" = {curve.terms_torque_Nm:g} N·m"
     for term, name in term_names().items():
         in_sum = None if term == TIGHT else getattr(total, f"{term}_arcsec")
-        own = curve.terms_arcsec[term]
+        in_gear = curve.terms_arcsec[term]
         rows.append(
             (
                 name,
                 "–" if in_sum is None else grouped(in_sum, 1),
-                grouped(own, 1),
-                grouped(round(own, 1) - round(in_sum or 0.0, 1), 1),
+                grouped(in_gear, 1),
+                grouped(round(in_gear, 1) - round(in_sum or 0.0, 1), 1),
             )
         )
     return Table(
@@ -118,8 +118,8 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
 
 
 def _assumed(curve: GearCurve) -> Iterable[Block]:
-    each = "; ".join(f"{a.key} = {plain_number(a.value, 4)} ({a.why})" for a in curve.assumed)
-    yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
+    values = "; ".join(f"{a.key} = {plain_number(a.value, 4)} ({a.why})" for a in curve.assumed)
+    yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{values}."))
     if curve.warnings:
         yield Callout("amber", items=tuple(map(sentence, gear_warnings(curve))))
     if curve.notes:

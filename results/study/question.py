@@ -41,10 +41,10 @@ def _span(key: str, span: VariedSpan) -> str:
 
 def _link(key: str, link: Link) -> str:
     times = "" if link.times == 1 else f"{link.times:g} · "
-    said = f"{times}{entry(link.of).name}"
+    text = f"{times}{entry(link.of).name}"
     if link.plus:
-        said += f" {'+' if link.plus > 0 else '−'} {abs(link.plus):g} {entry(key).unit}"
-    return said.rstrip()
+        text += f" {'+' if link.plus > 0 else '−'} {abs(link.plus):g} {entry(key).unit}"
+    return text.rstrip()
 
 
 def _spread(key: str, spread: Spread) -> str:

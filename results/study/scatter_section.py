@@ -52,10 +52,10 @@ def source_words(s: Scatter) -> str:
     explained = s.shares.explained
     if s.surface and explained is not None:
         missed = 100 * (1 - explained)
-        said = f"{missed:.2g} %" if missed >= 0.01 else "less than 0.01 %"
+        share = f"{missed:.2g} %" if missed >= 0.01 else "less than 0.01 %"
         return (
             "Distribution, indices and tightening come from one quadratic surface through all designs; at "
-            f"designs left out of the fit it misses {said} of the variance (root mean square "
+            f"designs left out of the fit it misses {share} of the variance (root mean square "
             f"{s.surface.misfit**0.5:.2g} {entry(s.key).unit}), which the intervals include."
         )
     tried = ""

@@ -12,12 +12,12 @@ def start_breaks(result: StudyResult) -> str:
     if result.start is None:
         return ""
     figures = result.start.figures
-    said = [
+    broken = [
         f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed are {allowed(key, limit)}"
         for key, limit in result.study.file.constraint.items()
         if key in figures and limit.excess(figures[key]) > 0
     ]
-    return f"breaks a constraint ({'; '.join(said)})" if said else ""
+    return f"breaks a constraint ({'; '.join(broken)})" if broken else ""
 
 
 def unbeaten_start(result: StudyResult) -> list[str]:

@@ -69,7 +69,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
     ]
     title = "Lost motion of each unit against the prediction"
     with _unit_rows(path, labels, title, "angle between −T and +T", 0.8) as axes:
-        ends, said = [], []
+        ends, annotations = [], []
         for row, unit in enumerate(units):
             envelope = analysis.envelope_at(unit.torque_Nm)
             low, high = envelope.interval_arcsec
@@ -96,12 +96,12 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             )  # fmt: skip
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
-            said.append(axes.annotate(
+            annotations.append(axes.annotate(
                 f"{unit.total_arcsec:.1f} arcsec, {words} ({signed(unit.z, 1)} σ)",
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
-        fit(said, 0.235 * axes.figure.bbox.width)
+        fit(annotations, 0.235 * axes.figure.bbox.width)
         room = 0.06 * (max(ends) - min(ends) + 1e-9)
         axes.set_xlim(min(ends) - room, max(ends) + room)
 

@@ -31,18 +31,18 @@ def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
     else:
         shares = {c.id: _sizes_apart(apart, c) for c in causes}
     titles = {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in causes}
-    found = [(title, own) for title, own in titles.items() if own is not None]
-    return dict(found[:MOST_CAUSES])
+    shared = [(title, amplitudes) for title, amplitudes in titles.items() if amplitudes is not None]
+    return dict(shared[:MOST_CAUSES])
 
 
 def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
     """Sizes in units that were diagnosed each by itself, over the largest."""
     none = none_of(cause)
-    own = [{c.id: c for c in j.causes}.get(cause.id) for j in apart.decisions.values() if j]
-    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in own]
+    in_units = [{c.id: c for c in j.causes}.get(cause.id) for j in apart.decisions.values() if j]
+    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in in_units]
     size, std = np.array(pairs).T
     whole = max(size - none, key=abs)
-    split = sum(c.id == cause.id for c in apart.decision.causes) > 1 or None in own
+    split = sum(c.id == cause.id for c in apart.decision.causes) > 1 or None in in_units
     return UnitAmplitudes((size - none) / whole, std / abs(whole), inf if split else 0.0)
 
 

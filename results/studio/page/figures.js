@@ -114,9 +114,9 @@ export class Figures {
     const row = (key) => [...stiffness, ...peaks].find((entry) => entry.key === key);
     const cell = (head, unit, text, key, without) => el("div", { class: this.stale(key) ? "stale" : "" },
       el("dt", {}, head, unit ? ` ${unit}` : ""), el("dd", {}, text ?? "…"), without ? el("dd", { class: "limit" }, without) : "");
-    const found = BRIEF.map((key) => row(key)).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key, entry.without));
+    const cells = BRIEF.map(row).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key, entry.without));
     const total = budget?.rows.find((entry) => entry.key.endsWith("total"));
-    document.getElementById("brief").replaceChildren(...found, cell("Backlash", "arcsec", total?.text, DRAWN));
+    document.getElementById("brief").replaceChildren(...cells, cell("Backlash", "arcsec", total?.text, DRAWN));
   }
 
   heading(text, unit) {
@@ -159,9 +159,9 @@ export class Figures {
   }
 
   solidCell(row, part) {
-    const found = this.seen.solid[part].find((other) => other.key === row.key);
-    const cell = el("td", { class: `value solid ${this.seen.solid.old ? "stale" : ""}`, title: found?.bounds }, found?.text ?? "");
-    if (found?.bounds) cell.append(el("br"), el("span", { class: "limit" }, found.bounds));
+    const solved = this.seen.solid[part].find((other) => other.key === row.key);
+    const cell = el("td", { class: `value solid ${this.seen.solid.old ? "stale" : ""}`, title: solved?.bounds }, solved?.text ?? "");
+    if (solved?.bounds) cell.append(el("br"), el("span", { class: "limit" }, solved.bounds));
     return cell;
   }
 
