@@ -81,9 +81,9 @@ def refuse_fixed(path: Path) -> None:
     except FileNotFoundError:
         return
     if stat.S_ISDIR(there.st_mode):
-        raise OSError(errno.EISDIR, "is a folder, where a file is to be written", str(path))
+        raise OSError(errno.EISDIR, "is a folder, but a file must be written there", str(path))
     above = path.parent.stat()
     sticky = bool(above.st_mode & stat.S_ISVTX) and hasattr(os, "geteuid")
     if sticky and os.geteuid() not in (0, there.st_uid, above.st_uid):
-        reason = "belongs to another user, whose files this folder keeps"
+        reason = "belongs to another user, and this folder does not allow to replace it"
         raise OSError(errno.EPERM, reason, str(path))

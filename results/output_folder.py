@@ -44,9 +44,7 @@ def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool =
         reason = f"cannot be {verb} ({fault.strerror}); name another folder"
         raise DesignError("--out", str(folder), reason) from None
     if not free:
-        reason = (
-            "another flexspline command writes there now; wait for its end, or name another folder"
-        )
+        reason = "another flexspline command is writing there; wait until it ends, or name another folder"
         raise DesignError("--out", str(folder), reason)
     discard(folder, tell)
     for name in files:

@@ -14,8 +14,8 @@ from flexspline.results.quantities import quantity
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""
 MEANING = (
-    "the stress still rises towards such an edge, so the figure depends on the excluded distance and "
-    "is not a measure of the part's strength"
+    "the stress still rises towards this edge, so the value depends on the excluded distance and is not a "
+    "measure of the part's strength"
 )
 
 

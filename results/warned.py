@@ -100,10 +100,10 @@ def _missing(stiffnesses: Stiffnesses) -> Iterator[str]:
     written = set()
     for name, why in stiffnesses.missing.items():
         if name == "gear":
-            yield f"Whole gear: not found, {why}"
+            yield f"Whole gear: not computed, {why}"
             continue
         key = PEAK_KEYS.get(name, f"{name}_Nm_per_rad")
         if key in written:  # a field and its peak fail together
             continue
         written.add(key)
-        yield f"{quantity(key).name}: not found, {why}"
+        yield f"{quantity(key).name}: not computed, {why}"

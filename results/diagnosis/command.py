@@ -48,7 +48,7 @@ CountsPerTurn = Annotated[
 ]
 
 
-AGAIN = "; run the same command again: stiffnesses solved are kept, the diagnosis starts from the beginning"
+AGAIN = "; run the same command again: solved stiffnesses are kept, the diagnosis starts from the beginning"
 """To who stops the command."""
 TOML = ".toml"
 SUM, GEAR = "sum", "gear"

@@ -25,7 +25,7 @@ AS_SIMULATED = 0.8
 AS_SIMULATED_WITHIN = 0.5
 """Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
-NOT_NARROWED = "this record does not narrow it"
+NOT_NARROWED = "this record does not reduce the uncertainty"
 """What is said of a value that a record leaves as open as the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
@@ -111,17 +111,17 @@ def calibrated_sentences(
             compliance = _against(measured, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
     found_any = outcome.causes or outcome.unexplained
-    beside = ", without the effects found" if calibration.beside_effects and found_any else ""
+    beside = ", without the other effects" if calibration.beside_effects and found_any else ""
     text = f"Calibrated on this record{beside}: {'; '.join(parts)}."
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
     if elastic and calibration.compliance is not None:
         titles = joined((title_of(c.id, c.magnitude) for c in elastic), "and")
-        text += f" The measured slope is this compliance and the effect of: {titles}."
+        text += f" The measured slope is the sum of this compliance and the effect of: {titles}."
     if calibration.gap_arcsec.value < 0:
         text += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
     if outcome.unexplained:
-        text += " An effect is unexplained; it may have changed them by more than the stated ±."
+        text += " An unexplained effect may have changed these values by more than the stated ±."
     return text
 
 
@@ -140,7 +140,7 @@ def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     return (
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
         f"{plus_minus(prediction.compliance, prediction.compliance_std)}; the record itself is "
-        f"{slope_times(slope)}: a straight line through it has a slope of "
+        f"{slope_times(slope)}: a straight line through the record has a slope of "
         f"{slope.ratio * prediction.compliance:.3g}. The difference counts as an effect)"
     )
 
@@ -186,7 +186,7 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
         notes.append(
             f"{grouped(averaging.rows_read, 0)} rows were read and averaged to "
             f"{grouped(counts.total, 0)} means of neighbouring rows; "
-            f"{grouped(left, 0)} rows (spikes, surplus cycles) are in no mean"
+            f"{grouped(left, 0)} rows (spikes, surplus cycles) were left out of the means"
         )
     what = "rows" if averaging is None else "means"
     notes.append(
@@ -205,7 +205,7 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
         crossing = f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)}"
         notes.append(
             f"{crossing} (backlash crossing) were not used for identification"
-            + (f"; nor were {others}" if others else "")
+            + (f"; also not used: {others}" if others else "")
         )
     elif others:
         notes.append(f"{what} not used for identification: {others}")
@@ -216,7 +216,9 @@ def _at_the_crossing(prepared: PreparedSweep) -> str:
     """Which rows those are: the teeth's torque counts, which is not what was read."""
     band = f"{prepared.band_Nm:.3g} N·m"
     if prepared.ahead is not None:
-        return f"where friction ahead of the teeth leaves them less than {band}"
+        return (
+            f"where the torque at the teeth is less than {band} because of friction ahead of them"
+        )
     if prepared.offset_Nm:
         return f"within {band} of the shifted zero of torque"
     return f"with |T| < {band}"

@@ -43,8 +43,8 @@ LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 NOTHING_SHARE = 0.01
 """Of the simulated bend: a record that has less of it has none."""
 NOT_SOUGHT = (
-    "the gear's inputs were not searched for the cause of the difference: this needs one unit, loaded and "
-    "unloaded at both signs of torque, at three torques at least"
+    "no input of the gear was fitted to the difference: this needs one unit that was loaded and unloaded in "
+    "both directions, at three torques or more"
 )
 
 
@@ -84,7 +84,7 @@ def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
             f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
         )
     part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
-    text = f"; of this bend {part} is in this record"
+    text = f"; this record contains {part} of this deviation"
     if HARDENING in (c.id for c in causes):
         text += f". Other curvature is counted as {title_of(HARDENING)}"
     return text
@@ -104,7 +104,7 @@ def _held_rows(count: int) -> list[str]:
     if not count:
         return []
     return [
-        f"the angle is read more slowly than rows are written: {count} rows that repeat the previous "
+        f"the angle is read more slowly than rows are recorded: {count} rows that repeat the previous "
         "angle are left out, because the torque has changed since that reading"
     ]
 
@@ -126,11 +126,11 @@ def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> li
         if c.id not in (WEAR, DRIFT):
             continue
         if any(s.get("run_in_cycles", 0.0) > 0 or s.get("settling_s", 0.0) > 0 for s in shapes):
-            how = "it levels off"
+            how = "the growth levels off"
         elif any(s["exponent"] < 1 for s in shapes):
-            how = "it slows down"
+            how = "the growth slows down"
         elif any(s["exponent"] > 1 for s in shapes):
-            how = "it quickens"
+            how = "the growth accelerates"
         else:
             continue
         lines.append(f"size of {title_of(c.id)}: mean over the record; {how}")
@@ -164,13 +164,14 @@ def record_notes(sweep: Sweep) -> list[str]:
         remarks.append("time is the same in all rows: taken as not recorded")
     if lines := constant_lines(sweep):
         remarks.append(
-            f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: did the "
-            "channels drop out? Those rows count as measured; remove them if so"
+            f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: if the channels "
+            "dropped out, remove these rows; they are used as measured"
         )
     if copies := copied_rows(sweep):
         remarks.append(
-            f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured again, which makes the standard deviations too small"
+            f"the last {grouped(copies, 0)} rows repeat earlier rows to the last digit: if the file was "
+            "appended to itself, remove these rows; they are used as new measurements, which makes the "
+            "standard deviations too small"
         )
     return remarks
 
@@ -196,8 +197,8 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
         return []
     return [
         f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
-        f"some {1 / (1 - noise.memory):.0f} rows; an effect without a form in torque, time or position "
-        "would look the same"
+        f"about {1 / (1 - noise.memory):.0f} rows; an effect that follows neither torque nor time nor "
+        "position would look the same"
     ]
 
 
@@ -207,9 +208,9 @@ def _cancelling_notes(explained: ExplainedSweep) -> list[str]:
     if not terms_cancel(identified):
         return []
     return [
-        "the effects without a name cancel in part: together they are "
-        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; their forms and single sizes are not to be "
-        "relied on, and compliance and gap are calibrated without them"
+        "the unnamed effects cancel each other in part: their sum is "
+        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; do not rely on the form and size of a "
+        "single one; compliance and gap are calibrated without them"
     ]
 
 
@@ -270,13 +271,14 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
     chosen = analysis.chosen
     noise = f"the noise of one stiffness is taken as {100 * float(chosen.noise.mean()):.2g} %"
     if analysis.race.data.std is None:
-        noise += ", from the scatter, as the file states none"
+        noise += ", estimated from the scatter, because the file states none"
     lines = [noise]
     if analysis.part_guessed_by is not None:
         part = analysis.part[0]
         lines.insert(
             0,
-            f"the file has no column part: taken as {part}, by {GUESSED_BY[analysis.part_guessed_by]}",
+            f"the file has no column part: the part is taken as {part} because of "
+            f"{GUESSED_BY[analysis.part_guessed_by]}",
         )
     if YOUNGS_MODULUS not in chosen.causes:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
@@ -286,13 +288,16 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
         if s is not None and term.owner not in chosen.causes:
             change = f"{value:+.2g}".replace("-", "−")
             lines.append(
-                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm of "
-                "ISO 2768-m and not a finding"
+                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm (ISO "
+                "2768-m) and therefore not a finding"
             )
     how = (
-        "solved with their holes"
+        "solved with its holes"
         if analysis.with_holes
-        else "the given stiffness times the hole-free model's ratio"
+        else "the given stiffness times a ratio of the model without holes"
     )
-    lines.append(f"rows are {how}; changes with a dimension come from the hole-free model")
+    lines.append(
+        f"the simulated stiffness of each specimen is {how}; sensitivities to dimensions come from the model "
+        "without holes"
+    )
     return lines

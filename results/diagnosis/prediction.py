@@ -44,8 +44,8 @@ def predict_and_write(
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
         tell(
-            "note: no standard deviations, and rows beyond the torques of the model's record are not "
-            "counted: only a model of a torque sweep contains both"
+            "note: no standard deviations are given, and rows beyond the measured torques are not counted: "
+            "only a model from a torque sweep contains these data"
         )
     angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
     added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})

@@ -59,7 +59,7 @@ def reading_notes(read_as: ReadAs) -> list[str]:
         notes.append(f"columns empty in every row: {heads(read_as.empty)}")
     if read_as.heads_again:
         lines = listed(read_as.heads_again, "lines")
-        notes.append(f"skipped, header again or data types: line {lines}")
+        notes.append(f"skipped, repeated header or data types: line {lines}")
     if read_as.footer:
         lines = listed(read_as.footer, "lines")
         notes.append(f"skipped, text below the last row: line {lines}")
@@ -90,7 +90,7 @@ def _wrong_words(wrong: WrongReadings) -> str:
     after = (
         f"the row{s} {'are' if s else 'is'} left out"
         if wrong.rows_left_out
-        else "a straight line between the readings before and after is taken instead"
+        else "it is replaced by a straight line between the readings before and after"
     )
     return f"{what} in {where}, far from all other readings, is taken as a fault of the sensor: {after}"
 

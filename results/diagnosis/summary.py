@@ -78,8 +78,8 @@ def _far_off(diagnosis: Diagnosis) -> str:
 def _how_far(off: FarOff) -> str:
     value = plus_minus(off.measured.value, off.measured.std)
     return (
-        f"{value} {FAR_UNITS[off.quantity]}, lies {off.deviations:.1f} of its stated deviations from the "
-        "simulated one"
+        f"{value} {FAR_UNITS[off.quantity]}, differs by {off.deviations:.1f} stated standard deviations from "
+        "the simulated value"
     )
 
 
@@ -87,7 +87,7 @@ def _within(diagnosis: Diagnosis) -> str:
     """What contains all that was calibrated of a consistent record, where it is not `_far_off`."""
     calibration = diagnosis.calibration
     if calibration and calibration.far_off(diagnosis.prediction, UNUSUAL_DEVIATIONS):
-        return f"{FAR_DEVIATIONS:g} of its stated deviations"
+        return f"{FAR_DEVIATIONS:g} stated standard deviations"
     return "its stated uncertainty"
 
 
@@ -96,22 +96,22 @@ def _verdict(diagnosis: Diagnosis) -> str:
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:
         case "insufficient":
-            return f"Too little data to say anything: {_too_little(outcome)}."
+            return f"The data are not sufficient: {_too_little(outcome)}."
         case "consistent":
             noise = "" if points else " and the noise"
             return (
                 f"{AGREES[diagnosis.kind]} with the simulation within {_within(diagnosis)}{noise}."
             )
         case "named" if specimens:
-            return f"The simulation is wrong in one thing or more: {_listed(outcome.causes)}."
+            return f"The simulation is wrong in at least one point: {_listed(outcome.causes)}."
         case "named":
             return f"{left_out(outcome.causes)}{_left_over(outcome)}"
         case "ambiguous" if points is not None:
             return _ambiguous_end_points(outcome, points)
         case "ambiguous":
-            what = "missing from the simulation, and these data"
-            what = "wrong, and these specimens" if specimens else what
-            open_ = f"Something is {what} cannot tell what: {_rivals(outcome.causes)}."
+            what = "leaves an effect out, and these data do"
+            what = "is wrong in at least one point, and these specimens do" if specimens else what
+            open_ = f"The simulation {what} not show which: {_rivals(outcome.causes)}."
             return f"{open_}{_beside(outcome.causes)}{_left_over(outcome)}"
         case _ if points is not None:
             return "The totals depend on torque in a way that no known cause explains."
@@ -133,9 +133,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
         return ""
     channel = channel_words(most.channel)
     rms = f"{most.rms:.2g} {most.unit} rms"
-    return (
-        f" No known cause explains what is left over the {channel}: {structure_words(most)}, {rms}."
-    )
+    return f" No known cause explains the remaining structure ({channel}): {structure_words(most)}, {rms}."
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:
@@ -220,4 +218,4 @@ def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis)
     )
     why = "" if analysis.several_torques else ", because each unit was measured at one torque"
     beside = _beside(outcome.causes[1:])
-    return f"{where}, and these end points cannot tell why: {rival}{why}.{beside}"
+    return f"{where}, and these end points do not show why: {rival}{why}.{beside}"

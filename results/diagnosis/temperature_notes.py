@@ -22,14 +22,16 @@ def lag_notes(identified: Identification) -> list[str]:
     if lag is None:
         return []
     times = joined((f"{s:.3g}" for s in lag.lags_s), "and")
-    note = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
+    note = (
+        f"{title_of(THERMAL)}: in the model the gap follows the temperature with a lag of {times} s"
+    )
     if lag.stages > 1:
-        note += ", twice in a row"
+        note += " (two lags in series)"
     if lag.warmer_K:
         side = "warmer" if lag.warmer_K > 0 else "colder"
-        note += f", and began {abs(lag.warmer_K):.2g} K {side} than the reading"
+        note += f", starting {abs(lag.warmer_K):.2g} K {side} than the reading"
     if not lag.shown:
-        note += "; without a lag this record is explained nearly as well"
+        note += "; a model without a lag explains this record nearly as well"
     return [note]
 
 

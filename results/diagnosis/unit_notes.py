@@ -27,11 +27,11 @@ def unit_notes(analysis: SweepAnalysis) -> list[str]:
 def _apart_notes(apart: UnitsApart) -> list[str]:
     """What each unit shows by itself, and which one the figures are of."""
     notes = [
-        "the units differ, so each was diagnosed by its own rows; figures, calibrated values, errors on "
-        f"held-out rows and the extended model are those of {apart.unit}"
+        "the units differ, so each was diagnosed separately; figures, calibrated values, errors on held-out "
+        f"rows and the extended model are those of {apart.unit}"
     ]
     return notes + [
-        f"{name} by itself: {_decided(decision)}" for name, decision in apart.decisions.items()
+        f"{name} alone: {_decided(decision)}" for name, decision in apart.decisions.items()
     ]
 
 
@@ -59,8 +59,8 @@ def _share_notes(explained: ExplainedSweep) -> list[str]:
             continue
         shares_of_units = zip(names, shares.share, shares.share_std, strict=True)
         values = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in shares_of_units), "units")
-        mean = "differs between units; the extended model gives each of them the mean"
-        notes.append(f"{title}: {mean}; their shares of it: {values}")
+        mean = "differs between units; the extended model uses the mean for all of them"
+        notes.append(f"{title}: {mean}; shares of the mean: {values}")
     return notes
 
 

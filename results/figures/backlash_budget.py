@@ -198,11 +198,11 @@ def _sources(axes: Axes, backlash: Backlash) -> None:
 
 
 def _caption(content: ReportContent) -> str:
-    text = "The terms as they add up"
+    text = "The terms of the backlash sum"
     if content.backlash.std_arcsec is not None:
-        text += ", the total with one standard deviation, and its sources"
+        text += ", the total with one standard deviation, and the sources of this deviation"
     if content.extended is not None:
-        return f"{text}. Below the simulated sum: what the model in {content.extended.model} adds."
+        return f"{text}. Below the simulated sum: the terms that {content.extended.model} adds."
     return f"{text}."
 
 

@@ -149,7 +149,7 @@ class DrawingProcess:
         self._end()
         if self._too_slow:
             self._too_slow = False
-            return f"the process that draws gave no picture within {self.slowest_s:g} s"
+            return f"the drawing process made no picture within {self.slowest_s:g} s"
         how = f"exit status {status}"
         with contextlib.suppress(ValueError):
             how = signal.Signals(-status).name
@@ -162,12 +162,10 @@ class DrawingProcess:
             ),
             "",
         )
-        ended = f"the process that draws ended ({how}{last})"
+        ended = f"the drawing process ended ({how}{last})"
         if how == KILLED:
-            return (
-                f"{ended}, as a system without memory left makes it; free memory or draw elsewhere"
-            )
-        return f"{ended}, as missing or broken graphics drivers make it; {ADVICE}"
+            return f"{ended}: probably the system had no memory left; free memory or draw on another machine"
+        return f"{ended}: probably a graphics driver is missing or broken; {ADVICE}"
 
     def _end(self) -> None:
         process, self._process = self._process, None

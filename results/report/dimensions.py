@@ -17,7 +17,7 @@ from flexspline.results.report.spans import NBSP, Words, bold, plain
 
 def dimensions(design: Design) -> Iterable[Block]:
     """Every key of the design file with its value and unit, defaults included, by table."""
-    yield Heading("The design in figures", "figures")
+    yield Heading("Values of the design", "figures")
     yield Paragraph("Every key of the design file that has a value, defaults included.", small=True)
     yield Facts(tuple((name, _values_in_words(name, table)) for name, table in _tables(design)))
 

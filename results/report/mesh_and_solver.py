@@ -37,7 +37,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         ),
         caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
         "“energy – work” is the relative difference of the stiffness from strain energy and from the "
-        f"work of torque or loads; {tables.UNCHECKED} where a check was not made.",
+        f"work of torque or loads; “{tables.UNCHECKED}” means not checked.",
     )  # fmt: skip
     for method, kind in dict.fromkeys((s["method"], s["kind"]) for s in solves):
         alike = [s for s in solves if (s["method"], s["kind"]) == (method, kind)]
@@ -53,7 +53,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         yield Paragraph(
             bold("Elapsed time:")
             + plain(
-                f" {times}. Stages run side by side, so these do not add up; those read from the cache "
+                f" {times}. Stages run in parallel, so these times do not add up; stages read from the cache "
                 "are not listed."
             )
         )
@@ -71,8 +71,8 @@ def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
         + plain(" ")
         + _listed(quantity(f"{name}_Nm_per_rad").symbol for name in turned)
         + plain(
-            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this one is for the "
-            "pictures of stress"
+            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this mesh is for the "
+            "stress pictures"
             + (" and the other stiffnesses." if len(turned) < len(solved) else ".")
         )
     )
@@ -83,12 +83,12 @@ def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRo
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )
     if these[0]["kind"] == GUARANTEED:
-        text += plain("These bounds hold without exception. ")
+        text += plain("These bounds are guaranteed. ")
     else:
         text += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
     text += plain(
-        f"The wanted tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+        f"The requested tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
     )
     return text + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 

@@ -209,5 +209,5 @@ def _material(m: Material) -> str:
     limit = f", fatigue limit {m.fatigue_limit_MPa:g} MPa" if m.fatigue_limit_MPa else ""
     density = f"{m.density_kg_per_m3:g} kg/m³"
     if not m.density_stated:
-        density += " (steel's, not stated)"
+        density += " (of steel, not stated)"
     return f"{_elastic(m)}{limit}, density {density}"

@@ -22,12 +22,12 @@ def totals_and_terms(content: ReportContent) -> Words:
         bold("Totals and terms. ")
         + symbol(_SERIES.symbol)
         + plain(
-            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} is of flexspline and shaft alone (1/"
+            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} includes only flexspline and shaft (1/"
         )
         + symbol(_SERIES.symbol)
         + worded(f" = 1/{content.sum_symbol} + 1/K_e); the backlash of ")
         + plain(
-            f"{_SUM.with_unit(content.backlash.total_arcsec)} adds both clearances to their wind-up ("
+            f"{_SUM.with_unit(content.backlash.total_arcsec)} is their wind-up plus both clearances ("
         )
         + ref("budget")
         + plain("). ")
@@ -41,13 +41,13 @@ def totals_and_terms(content: ReportContent) -> Words:
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")
         + plain(
-            ") has teeth, rim contact and bearing in series and no clearance, as a catalogue's has. "
+            ") also includes teeth, rim contact and bearing, but no clearance, like K1 in a catalogue. "
         )
         + _whole_twist(curve)
         + plain(
             "Lost motion includes the clearances"
-            + (", of which none is left free" if curve.free_angle_arcsec == 0 else "")
-            + ". Bolts, housing and friction are in none of these."
+            + (", but no free angle remains here" if curve.free_angle_arcsec == 0 else "")
+            + ". None of these values includes bolts, housing or friction."
         )
     )
 
@@ -57,4 +57,4 @@ def _whole_twist(curve: GearCurve) -> Words:
     if not curve.terms_arcsec:
         return ()
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"It twists by {total} between ± T_L. ")
+    return worded(f"The whole gear twists by {total} between ± T_L. ")

@@ -88,14 +88,14 @@ def left_out(design: Design) -> tuple[str, ...]:
 
 def agreement(design: Design) -> str:
     """How these figures stand to those of the command line."""
-    both = "; of both, K_e is too large (see the warnings)" if held_beyond_flange(design) else ""
+    both = "; in both, K_e is too large (see the warnings)" if held_beyond_flange(design) else ""
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
         but_for = joined(dict.fromkeys(words), "and")
-        return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds{both}"
+        return f"Equals `flexspline stiffness` except for {but_for}; K_b within its bounds{both}"
     if design.solver.model == "solid":
-        return f"Equals `flexspline stiffness`, there the solid model, within the bounds{both}"
+        return f"Equals `flexspline stiffness` (solid model) within the bounds{both}"
     return f"Equals `flexspline stiffness` to seven digits{both}"
 
 

@@ -32,12 +32,12 @@ def design_table(result: StudyResult) -> Iterable[Block]:
     breaks = start_breaks(result)
     first = "start (not allowed)" if breaks else "start"
     heads = (*(first for _ in begun), *(_head(result, r) for r in chosen))
-    yield Heading("The best designs" if result.study.file.objective else "The designs built")
+    yield Heading("The best designs" if result.study.file.objective else "The built designs")
     yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
     if marked_figures(result):
         yield Paragraph(f"{MARK} {BORDER}: {MEANING}.")
     if begun:
-        remark = "start: the design that the study began with, solved in the same way"
+        remark = "start: the design of the study file before any change, solved in the same way"
         yield Paragraph(f"{remark}; it {breaks}." if breaks else f"{remark}.")
 
 

@@ -20,7 +20,7 @@ COUNTED_DESIGNS = 10_000
 """Of which it is counted who has a warning: a design is read again in 0.12 ms, so 1.2 s; of more, none."""
 WHOLE_FACE = "K_e, the shaft's whole first face held"
 """The kind of that warning; its line takes two solves, so it is made for a design that is told of alone."""
-FIRST = "the design that the study begins with"
+FIRST = "start design"
 
 
 @dataclass(frozen=True)

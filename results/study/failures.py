@@ -73,7 +73,7 @@ def failure_lines(result: StudyResult) -> Iterator[str]:
         return
     count = sum(bool(row.outcome.faults) for row in result.rows)
     yield (
-        f"{count} of {len(result.rows)} designs could not be built, or not be solved in full, by cause (a "
+        f"{count} of {len(result.rows)} designs could not be built or not be solved completely; causes (a "
         "design may have several):"
     )
     for cause in reasons[:LISTED_REASONS]:

@@ -89,7 +89,7 @@ def _advice(result: StudyResult, key: str) -> str:
             r.outcome.figures for r in result.built if limit.excess(r.outcome.figures[key]) <= 0
         ]
         if count := sum(at_border(key, figures) for figures in kept):
-            text = f"; {len(kept)} designs meet this constraint, {count} of them by such a figure"
+            text = f"; {len(kept)} designs meet this constraint, {count} of them with such a value"
     better = f"{ON_HALF_SEAT}_mises_MPa"
     if key == f"{ON_ELLIPSE}_mises_MPa" and _used(result, key) and not _used(result, better):
         text += f"; use {better} instead, on a seat half as wide as the ring"
@@ -116,9 +116,9 @@ def unsettled(result: StudyResult) -> Iterable[str]:
         best = min((value for _, value in values), default=inf)
         gain = (early - best) / max(abs(best), ABOVE_ZERO) if early < inf else inf
         if best < inf and gain > LEAST_MOVE:
-            moved = "was first found" if gain == inf else f"still got {percent(gain)} better"
+            moved = "was first found" if gain == inf else f"still improved by {percent(gain)}"
             yield (
-                f"the search has not settled: the best “{entry(key).name}” {moved} in the last quarter of "
+                f"the search has not converged: the best “{entry(key).name}” {moved} in the last quarter of "
                 f"the {len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
             )
 
@@ -129,8 +129,8 @@ def unmoved(result: StudyResult) -> Iterable[str]:
         values = {r.outcome.figures[key] for r in result.built if key in r.outcome.figures}
         if len(values) == 1 and len(result.built) > 1:
             yield (
-                f"“{entry(key).name}” is the same in all {len(result.built)} designs: the model does not "
-                "depend on what is varied, so no design is the best"
+                f"“{entry(key).name}” is the same in all {len(result.built)} designs: it does not depend on "
+                "the varied keys, so no design is the best"
             )
 
 
@@ -171,7 +171,9 @@ def _mass(design: Design) -> str:
     densities = []
     for part in PART_NAMES:
         material = design.part(part).material
-        source = "as stated" if material.density_stated else "steel's, since the file states none"
+        source = (
+            "as stated" if material.density_stated else "of steel, because the file states none"
+        )
         densities.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")
     if densities[0] == densities[1]:
         return f"Mass at {densities[0]}."
@@ -191,7 +193,7 @@ def _holes(result: StudyResult) -> Iterable[str]:
     if pierced(design):
         yield from _shaft_holes(result)
     if keys := unfollowed(result.study):
-        yield f"{keys}: the fast model ignores these; the mass includes them, and run.verify solves them."
+        yield f"The fast model ignores {keys}; the mass includes them, and run.verify solves them."
 
 
 def wide_bounds(result: StudyResult) -> Iterable[str]:
@@ -223,8 +225,7 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
     share = f" and by {100 * HOLE_EFFECT_DRIFT:g} % of the correction" if moved else ""
     ends = list(dict.fromkeys(percent_change(f - 1) for f in (max(factors), min(factors))))
     yield (
-        f"Holes and keyway change K_e by {' to '.join(ends)}: the same share of the flange's and the "
-        "keyway's own compliance as in the design that the study began with (one solid solve). Bounds of "
-        "K_e are widened "
-        f"by the uncertainty of both solves{share}, and are estimates."
+        f"Holes and keyway change K_e by {' to '.join(ends)}. Their effect is taken as the same share of the "
+        "compliance of flange and keyway as in the start design (one solid solve). The bounds of K_e are "
+        f"widened by the uncertainty of both solves{share}; they are estimates."
     )

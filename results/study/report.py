@@ -49,7 +49,7 @@ METHODS = {
     "grid": "Every combination of the given values.",
     "sobol": "Designs spread evenly by a scrambled Sobol sequence.",
     "optimize": "Designs chosen by an optimiser that learns from the earlier designs.",
-    "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
+    "tolerance": "Scatter from uncertainty and tolerances through the whole analysis, by Saltelli's scheme.",
 }
 WIDTHS = {
     "pareto.png": 75, "best.png": 78, BEST_STRESS: 75, "convergence.png": 75, "parallel.png": 88,
@@ -62,9 +62,9 @@ CAPTIONS = {
     "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
     "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
-    "best.png": "{sections} in section, drawn over the first design.",
-    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it; the peak in "
-    "tables and warnings is the study's own, within about {tolerance} of it.",
+    "best.png": "{sections} in section, drawn over the start design.",
+    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it. The peak in "
+    "tables and warnings is from the study and differs by about {tolerance} at most.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
 }

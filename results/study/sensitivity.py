@@ -71,9 +71,9 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
         held = "-" if s.held is None else f"{s.held:.1f}"
         solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
         of_sum = "-" if s.backlash_arcsec_per_mm is None else f"{s.backlash_arcsec_per_mm:.3f}"
-        word = {True: "", False: "  DISAGREE", None: f"  one way only: {s.why}"}[s.agree]
+        word = {True: "", False: "  DISAGREE", None: f"  one method only: {s.why}"}[s.agree]
         if s.why_no_sum:
-            word += f"  no effect on the backlash sum given: {s.why_no_sum}"
+            word += f"  effect on the backlash sum not given: {s.why_no_sum}"
         out.append(
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
             f"{of_sum:>10}{word}"

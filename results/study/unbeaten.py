@@ -13,7 +13,7 @@ def start_breaks(result: StudyResult) -> str:
         return ""
     figures = result.start.figures
     broken = [
-        f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed are {allowed(key, limit)}"
+        f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed: {allowed(key, limit)}"
         for key, limit in result.study.file.constraint.items()
         if key in figures and limit.excess(figures[key]) > 0
     ]
@@ -32,6 +32,6 @@ def unbeaten_start(result: StudyResult) -> list[str]:
     if key not in figures or figures[key] == best or (figures[key] > best) != (goal == "maximize"):
         return []
     return [
-        f"No design is better than the start: {entry(key).name} {valued(key, figures)}, of design "
-        f"{result.pareto[0].slot} {valued(key, result.pareto[0].outcome.figures)}."
+        f"No design is better than the start design: {entry(key).name} {valued(key, figures)}; design "
+        f"{result.pareto[0].slot}: {valued(key, result.pareto[0].outcome.figures)}."
     ]

@@ -70,7 +70,7 @@ def limits(result: StudyResult) -> list[str]:
             q = entry(key)
             sentences.append(
                 f"Design {best.slot} is limited by the constraint on {q.name}: "
-                f"{q.with_unit(best.outcome.figures[key])}, allowed are "
+                f"{q.with_unit(best.outcome.figures[key])}, allowed: "
                 f"{allowed(key, result.study.file.constraint[key])}."
             )
         for key, value in unbuilt_neighbours(result, best):
@@ -104,12 +104,12 @@ def disagreement(check: Check) -> str:
     """Why the fast and the solid model may differ by more than they should."""
     if check.fast_bounds and check.solid_bounds:
         return (
-            "they disagree beyond their bounds; the fast model has the effect of the shaft's holes from "
-            "the nominal design"
+            "the two models differ by more than their bounds; the fast model takes the effect of the shaft's "
+            "holes from the nominal design"
         )
     return (
-        f"they differ by more than {100 * STRESS_SHARE:g} %; neither has bounds: the fast model's mesh "
-        "is finer, and only the solid model contains holes near the peak"
+        f"the two models differ by more than {100 * STRESS_SHARE:g} %; neither has bounds: the fast model "
+        "has a finer mesh, and only the solid model contains holes near the peak"
     )
 
 

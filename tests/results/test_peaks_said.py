@@ -162,6 +162,6 @@ def test_the_page_hears_of_a_torque_beyond_the_linear_model() -> None:
         update={"load": design().load.model_copy(update={"torque_Nm": 5000.0})}
     )
     (line,) = message(heavy, found)["beyond"]
-    assert "load.torque_Nm = 5000 is beyond" in line
+    assert "load.torque_Nm = 5000 exceeds" in line
     assert message(design(), found)["beyond"] == []
     assert "beyond" not in message(heavy, {})  # nothing is known of K yet

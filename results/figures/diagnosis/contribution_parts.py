@@ -90,7 +90,7 @@ def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
         odds_words(cause.evidence_nats),
     ]
     if cause.alternatives:
-        lines[-2:] = ["not decided: rivals", "explain it as well"]
+        lines[-2:] = ["not decided: other causes", "explain it equally well"]
     return ContributionPanel(
         cause.id,
         _short(cause_title(cause)),

@@ -120,7 +120,7 @@ def residual_words(
         if t.p_value < STRUCTURE_P_VALUE:
             results[t.channel] = f"structure left, {t.rms_arcsec:.2g} arcsec"
         elif t.channel in nameless:
-            results[t.channel] = f"fitted without a name, {nameless[t.channel]:.2g} arcsec"
+            results[t.channel] = f"fitted, no cause known, {nameless[t.channel]:.2g} arcsec"
         else:
             results[t.channel] = nothing
     return results

@@ -86,7 +86,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             if np.isfinite(limit):
                 axes.plot(
                     [limit] * 2, [row - 0.33, row + 0.33], color=MUTED, lw=1.4, ls=(0, (2, 1.5)),
-                    label="most that clearance can give" if first else None,
+                    label="largest angle from clearance" if first else None,
                 )  # fmt: skip
                 ends.append(limit)
             colour = INK if unit.within else ACCENT
@@ -111,7 +111,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
     units = shown_units(analysis)
     labels = [f"unit {n}" for n in plain_names(tuple(u.unit for u in units))]
     reach = analysis.mids.asymmetry_reach_arcsec
-    with _unit_rows(path, labels, "Where each unit's ends lie", "angle read") as axes:
+    with _unit_rows(path, labels, "Positions of both ends of each unit", "measured angle") as axes:
         axes.axvspan(
             -reach,
             reach,

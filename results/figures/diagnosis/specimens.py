@@ -38,7 +38,7 @@ def write_stiffness(path: Path, analysis: SpecimenAnalysis) -> None:
         if analysis.chosen.terms:
             axes.plot(
                 x, _pct(analysis.explained, analysis), "D", ms=6, mfc="none", mec=PALETTE[2], mew=1.8,
-                label="with what was found",
+                label="with the identified causes",
             )  # fmt: skip
         axes.errorbar(
             x, _pct(analysis.measured, analysis),
@@ -53,7 +53,7 @@ def write_stiffness(path: Path, analysis: SpecimenAnalysis) -> None:
         )
         axes.grid(axis="y")
         axes.set_xlabel("specimen")
-        axes.set_ylabel("stiffness over simulated in %")
+        axes.set_ylabel("difference from simulated in %")
         titled(figure, 0.945, "Measured stiffness against the simulation")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 0.865), ncols=4, fontsize=9, columnspacing=1.3,
@@ -70,7 +70,7 @@ def write_dimensions(
     measured, explained = _pct(analysis.measured, analysis), _pct(analysis.explained, analysis)
     with styled():
         title = "Measured minus simulated, over every dimension"
-        figure, panels = panel_sheet(len(varying), title, "over simulated, %")
+        figure, panels = panel_sheet(len(varying), title, "difference, %")
         for axes, (key, values) in zip(panels, varying.items(), strict=True):
             _against(
                 axes, values, measured, explained, 100 * analysis.noise, bool(analysis.chosen.terms)
@@ -92,8 +92,8 @@ def write_held_out_specimens(path: Path, analysis: SpecimenAnalysis, gain: Gain)
         axes.axhspan(-2 * noise, 2 * noise, color=GRID, lw=0, label="noise ± 2σ")
         axes.axhline(0, color=MUTED, lw=0.8)
         for values, words, colour in (
-            (analysis.held_out_before, "simulation as it stands", PALETTE[2]),
-            (analysis.held_out, "with what was found", PALETTE[0]),
+            (analysis.held_out_before, "simulation as designed", PALETTE[2]),
+            (analysis.held_out, "with the identified causes", PALETTE[0]),
         ):
             axes.plot(x, 100 * values, "o", ms=5.5, color=colour, label=words)
         names = plain_names(analysis.specimen)
@@ -102,7 +102,7 @@ def write_held_out_specimens(path: Path, analysis: SpecimenAnalysis, gain: Gain)
         axes.set_xlabel("specimen, predicted from all others")
         axes.set_ylabel("error of 1/stiffness in %")
         axes.grid(axis="y")
-        names = ("as it\nstands", "modulus\nfitted", "with what\nwas found")
+        names = ("as\ndesigned", "modulus\nfitted", "with\ncauses")
         before_and_after(bars, gain, names, "noise")
         titled(figure, 0.945, "Error on specimens not used for fitting")
         figure.legend(
@@ -130,7 +130,7 @@ def _against(
             mfc="none",
             mec=PALETTE[2],
             mew=1.8,
-            label="with what was found",
+            label="with the identified causes",
         )
     axes.errorbar(
         x, measured, yerr=noise, fmt="o", ms=5, color=INK, capsize=3, lw=1.2, label="measured, ± 1σ"

@@ -84,5 +84,5 @@ def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmpli
             thin_labels(axes)
             axes.grid(axis="y")
         axes.set_xlabel("unit under test")
-        titled(figure, 1 - 0.28 / height, "Effects common to all units, and of single units")
+        titled(figure, 1 - 0.28 / height, "Effects in all units and in single units")
         save_png(figure, path)

@@ -105,7 +105,7 @@ export class Figures {
     this.gear.replaceChildren();
     if (this.noGear && this.noGear.number === state.number) {
       this.gear.className = "";
-      this.gear.append(this.heading("Whole gear, wave generator locked", ""), el("p", { class: "limit" }, `Not found: ${this.noGear.text}`));
+      this.gear.append(this.heading("Whole gear, wave generator locked", ""), el("p", { class: "limit" }, `Not computed: ${this.noGear.text}`));
     } else if (gear) this.gear.append(this.heading("Whole gear, wave generator locked", ""), ...gearPanel(gear, pinned));
   }
 
@@ -131,8 +131,8 @@ export class Figures {
   head(third) {
     const cells = [el("th", { colspan: 2 }), el("th", {}, "fast model")];
     if (!this.narrow) cells.push(el("th", {}, third));
-    if (this.seen.solid) cells.push(el("th", {}, this.seen.solid.old ? "solid, of earlier" : "solid"));
-    if (this.seen.pinned) cells.push(el("th", {}, "to pinned"));
+    if (this.seen.solid) cells.push(el("th", {}, this.seen.solid.old ? "solid, earlier" : "solid"));
+    if (this.seen.pinned) cells.push(el("th", {}, "vs. pinned"));
     return el("thead", {}, el("tr", {}, ...cells));
   }
 

@@ -69,7 +69,7 @@ def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
     calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
     assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
-    assert "as simulated: this record does not narrow it" in said
+    assert "as simulated: this record does not reduce the uncertainty" in said
 
 
 def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
@@ -78,7 +78,7 @@ def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
     held = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
     found = DiagnosisOutcome("unknown")
     said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
-    assert "does not narrow" not in said
+    assert "does not reduce" not in said
     assert "6.49 times stiffer: a straight line through it has a slope of 1.54" in said
     # a compliance that follows the slope says it by itself
     moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
@@ -99,7 +99,7 @@ def test_the_next_measurement_names_a_cause_as_the_verdict_does(percent: float, 
 @pytest.mark.parametrize(
     ("separation", "said"),
     [
-        (3.0, "; it distinguishes"),
+        (3.0, "; this distinguishes"),
         (0.4, "about 50 such specimens are needed to distinguish"),  # 8 / 0.4²
         (0.1, "too little to distinguish"),
     ],
@@ -120,7 +120,7 @@ def test_nothing_found_is_not_calibrated_beside_effects() -> None:
     calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.01))
     prediction = Prediction(10.0, 0.3, 70.0, 10.0)
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
-    assert "without the effects found" not in said
+    assert "without the other effects" not in said
 
 
 def test_a_gap_beside_the_clearance_found_is_not_called_open() -> None:
@@ -129,5 +129,5 @@ def test_a_gap_beside_the_clearance_found_is_not_called_open() -> None:
     calibration = Calibration(Estimate(71.0, 9.9), True, Estimate(10.0, 0.01))
     prediction = Prediction(10.0, 0.3, 70.0, 10.0)
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("named", (found,)))
-    assert "does not narrow" not in said
+    assert "does not reduce" not in said
     assert "the difference counts as clearance other than simulated" in said

@@ -90,4 +90,4 @@ def test_a_rate_without_time_is_told(tmp_path: Path) -> None:
         text = model_text(rate, replace(ORIGIN, time_recorded=timed))
         path.write_text(text, encoding="utf-8")
         told = model_warnings(read_model_file(path), DESIGN)
-        assert any("counts a row as a second" in line for line in told) == (not timed)
+        assert any("takes one row as one second" in line for line in told) == (not timed)

@@ -151,7 +151,7 @@ def test_a_start_that_nothing_beats_is_said(K_start: float, stress: float, said:
     result = result_of(STUDY.replace("300.0", "310.0"))
     began = replace(result, start=Outcome({K: K_start, STRESS: stress, TOTAL: 85.0}))
     text = str(payload_of(study_document(began, ())))
-    assert ("No design is better than the start" in text) is said
+    assert ("No design is better than the start design" in text) is said
     assert bool(unbeaten_start(began)) is said
 
 
@@ -178,7 +178,7 @@ def test_a_constraint_that_holds_is_said_with_its_limit() -> None:
     (line,) = (
         t for t in limits(result_of(STUDY.replace("300.0", "310.0"))) if "is limited by" in t
     )
-    assert "310" in line.partition("allowed are")[0]
+    assert "310" in line.partition("allowed:")[0]
     assert "at most 310" in line
 
 
@@ -237,7 +237,7 @@ def test_the_report_repeats_what_is_asked() -> None:
     assert [tuple(cell.replace("\u202f", " ") for cell in row) for row in table.rows] == [
         ("varied", "wall thickness", "0.3 to 0.5 mm, 3 values"),
         ("follows", "ring thickness", "wall thickness + 0.15 mm"),
-        ("sought", entry(K).name, "as large as possible"),
+        ("objective", entry(K).name, "as large as possible"),
         ("allowed", entry(STRESS).name, "at most 300 MPa"),
         ("allowed", entry(TOTAL).name, "at most 90.0 arcsec"),
     ]
@@ -331,8 +331,8 @@ def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
 @pytest.mark.parametrize(
     ("most", "flagged_designs", "said"),
     [
-        ("330.0", 10, "3 designs meet this constraint, 3 of them by such a figure"),
-        ("330.0", 1, "3 designs meet this constraint, 1 of them by such a figure"),
+        ("330.0", 10, "3 designs meet this constraint, 3 of them with such a value"),
+        ("330.0", 1, "3 designs meet this constraint, 1 of them with such a value"),
         ("300.0", 10, ""),
     ],
 )
@@ -369,7 +369,7 @@ def test_keys_of_holes_are_named_as_not_followed() -> None:
 @pytest.mark.parametrize(
     ("density", "said"),
     [
-        ("", "7850 kg/m³ (steel's, since the file states none)"),
+        ("", "7850 kg/m³ (of steel, because the file states none)"),
         ("4430.0", "4430 kg/m³ (as stated)"),
     ],
 )
@@ -435,7 +435,7 @@ def test_few_designs_without_an_objective_have_their_figures_in_the_report() -> 
     assert [row[0] for row in asked.rows] == ["varied", "allowed", "allowed"]
     assert [c.head for c in table.columns] == ["", "design 0 (not allowed)"]
     assert [row[1] for row in table.rows] == ["0.3", "30\u202f000", "310 †", "85.0"]
-    assert "The designs built" in str(payload_of(document))
+    assert "The built designs" in str(payload_of(document))
 
 
 @pytest.mark.parametrize(("most", "allowed"), [("300.0", False), ("450.0", True)])
@@ -462,7 +462,7 @@ def test_with_drawn_teeth_the_ring_of_the_sensitivities_is_said_not_to_be_the_fi
             [*range(100, 115), 114, 113, 114, 112, 114],
             None,
         ),  # the best is found before the last five
-        ([*range(100, 120)], "still got 4.2 % better in the last quarter of the 20 designs"),
+        ([*range(100, 120)], "still improved by 4.2 % in the last quarter of the 20 designs"),
         ([*range(100, 115), 114.4, 114, 114, 114, 114], None),  # by less than bounds are wide
     ],
 )
