@@ -159,7 +159,10 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
         if after.doing is not None:
             return doing_words(after.doing)
         where = f" ({words_of(after.structure, after.vary)})" if after.structure else ""
-        return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
+        how = SHOWS_STRUCTURE.get(
+            after.vary, "vary only this channel and keep everything else constant"
+        )
+        return f"the structure lies in {channel_words(after.vary)}{where}: {how}"
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
@@ -173,10 +176,6 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
         return f"to distinguish {separated}: {doing}"
     difference = f"their predictions then differ by {after.separation:.0f} times the noise"
     return f"to distinguish {separated}: {doing_words(after.doing)}; {difference}"
-
-
-def _alone(channel: str) -> str:
-    return SHOWS_STRUCTURE.get(channel, "vary only this channel and keep everything else constant")
 
 
 def _of_end_points(after: NextMeasurement, titles: Sequence[str]) -> str:

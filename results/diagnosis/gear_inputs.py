@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.fitted_input import FittedInput
     from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
+    from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
     from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair
 
 
@@ -20,26 +21,17 @@ def gear_inputs_record(identification: GearIdentification) -> dict[str, Any]:
         "chi_square": identification.chi_square,
         "places": identification.places,
         "fitted": [
-            {
-                "key": one.key, "unit": one.unit, "nominal": one.nominal, "value": one.value,
-                "value_std": one.std, "chi_square": one.chi_square,
-            }
+            {**_input_record(one, one.value, one.std), "chi_square": one.chi_square}
             for one in identification.fitted
         ],
-    }  # fmt: skip
+    }
     if identification.outcome == "named":
         record |= {"named": identification.fitted[0].key, "rivals": list(identification.rivals)}
     if identification.pairs:
         record["pairs"] = [
             {
                 "inputs": [
-                    {
-                        "key": one.key,
-                        "unit": one.unit,
-                        "nominal": one.nominal,
-                        "value": value,
-                        "value_std": std,
-                    }
+                    _input_record(one, value, std)
                     for one, value, std in zip(pair.inputs, pair.values, pair.stds, strict=True)
                 ],
                 "chi_square": pair.chi_square,
@@ -55,6 +47,12 @@ def gear_inputs_record(identification: GearIdentification) -> dict[str, Any]:
         record["told_apart_at_Nm"] = identification.apart.torque_Nm
         record["told_apart_by_arcsec"] = identification.apart.difference_arcsec
     return record
+
+
+def _input_record(one: FittedInput | GearInput, value: float, std: float) -> dict[str, Any]:
+    return {
+        "key": one.key, "unit": one.unit, "nominal": one.nominal, "value": value, "value_std": std,
+    }  # fmt: skip
 
 
 def gear_inputs_notes(identification: GearIdentification) -> tuple[str, ...]:

@@ -96,7 +96,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:
         case "insufficient":
-            return f"The data are not sufficient: {_too_little(outcome)}."
+            reason = "" if outcome.too_little is None else shortage_words(outcome.too_little)
+            return f"The data are not sufficient: {reason}."
         case "consistent":
             noise = "" if points else " and the noise"
             return (
@@ -117,11 +118,6 @@ def _verdict(diagnosis: Diagnosis) -> str:
             return "The totals depend on torque in a way that no known cause explains."
         case _:
             return _unknown(outcome, specimens)
-
-
-def _too_little(outcome: DiagnosisOutcome) -> str:
-    """Why there are too few data; "" where there are enough."""
-    return "" if outcome.too_little is None else shortage_words(outcome.too_little)
 
 
 def _left_over(outcome: DiagnosisOutcome) -> str:

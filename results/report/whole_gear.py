@@ -12,7 +12,6 @@ from flexspline.results.gear_terms import term_names
 from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantities_of, quantity
-from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
     Block,
@@ -62,7 +61,7 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Column("Unit"),
         ),
         rows=tuple(
-            _figure(entry, value)
+            (entry.name, symbol(entry.symbol), bold(entry.text(value)), entry.unit)
             for entry in quantities_of("gear")
             if (value := getattr(curve, entry.key)) is not None
         ),
@@ -76,10 +75,6 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
 def _torque(curve: GearCurve, key: str) -> Words:
     entry = quantity(key)
     return symbol(entry.symbol) + plain(f" = {entry.with_unit(getattr(curve, key))}")
-
-
-def _figure(entry: Quantity, value: float) -> tuple[str | Words, ...]:
-    return entry.name, symbol(entry.symbol), bold(entry.text(value)), entry.unit
 
 
 def _shares(curve: GearCurve) -> Words:

@@ -109,12 +109,8 @@ def design_warnings_shown(design: Design) -> list[str]:
 
 def figure(key: str, value: float) -> Message:
     """A number and how it is printed; `decimals` serves differences of the same figure."""
-    entry = quantity(key)
-    text = entry.text(value)
-    return {
-        "key": key, "value": value, "text": text, "unit": entry.unit, "symbol": entry.symbol,
-        "name": entry.name, "short": entry.short_name, "decimals": len(text.partition(".")[2]),
-    }  # fmt: skip
+    text = quantity(key).text(value)
+    return _waiting(key) | {"value": value, "text": text, "decimals": len(text.partition(".")[2])}
 
 
 def without(name: str, design: Design) -> str:
@@ -191,6 +187,7 @@ def _gear(gear: ComputedFigures) -> Message:
 
 
 def _waiting(key: str) -> Message:
+    """A figure that is still to come."""
     entry = quantity(key)
     return {
         "key": key, "symbol": entry.symbol, "name": entry.name, "short": entry.short_name,

@@ -75,7 +75,8 @@ NOTES: dict[GearNote, str] = {
     ): "at load.torque_Nm = 0.5, the lost motion at 0.8 N·m (4 % of rated torque)",
     JointClearances(
         24.1, 7.04
-    ): "decreases by 24 arcsec; the terms remove the flank clearance first, so the term of the play is 7 arcsec",
+    ): "decreases by 24 arcsec; the terms remove the flank clearance first, so the term of the play "
+    "is 7 arcsec",
     BucklingTube(
         788.0, 832.0
     ): "at about 790 N·m (lower bound of tests), where its shear stress is 830 MPa",

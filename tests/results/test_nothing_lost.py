@@ -10,6 +10,7 @@ import pytest
 from example_files import EXAMPLES
 from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
+from written_report import write_report
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
@@ -22,7 +23,6 @@ from flexspline.results.pictures import RunPictures
 from flexspline.results.report import build
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
 
 EXAMPLE = EXAMPLES / "keyed-shaft.toml"

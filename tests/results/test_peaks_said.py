@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
+from written_report import write_report
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
@@ -21,7 +22,6 @@ from flexspline.results.renders.picture_elements import stress_note
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.tables import answers
-from flexspline.results.report.write import write_report
 from flexspline.results.studio.answer import message
 from flexspline.results.warned import shortfalls
 

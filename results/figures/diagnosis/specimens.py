@@ -30,28 +30,18 @@ def write_stiffness(path: Path, analysis: SpecimenAnalysis) -> None:
     with styled():
         figure = new_figure(8.0, 3.7, DPI)
         axes = figure.add_axes((0.095, 0.185, 0.875, 0.62))
-        axes.axhline(0, color=PALETTE[0], lw=1.6, label="simulation")
         axes.plot(
             x, _pct(analysis.calibrated, analysis), "_", ms=16, mew=2.0, color=PALETTE[1],
             label="modulus fitted",
         )  # fmt: skip
-        if analysis.chosen.terms:
-            axes.plot(
-                x, _pct(analysis.explained, analysis), "D", ms=6, mfc="none", mec=PALETTE[2], mew=1.8,
-                label="with the identified causes",
-            )  # fmt: skip
-        axes.errorbar(
-            x, _pct(analysis.measured, analysis),
-            yerr=100 * analysis.noise * analysis.measured / analysis.simulated,
-            fmt="o", ms=5, color=INK, capsize=3, lw=1.2, label="measured, ± 1σ",
-        )  # fmt: skip
+        noise = 100 * analysis.noise * analysis.measured / analysis.simulated
+        _against(axes, x, analysis, noise)
         names = plain_names(analysis.specimen)
         step = -(-n // MOST_NAMES)
         long = max(map(len, names)) * n > 90
         axes.set_xticks(
             x[::step], names[::step], rotation=40 if long else 0, ha="right" if long else "center"
         )
-        axes.grid(axis="y")
         axes.set_xlabel("specimen")
         axes.set_ylabel("difference from simulated in %")
         titled(figure, 0.945, "Measured stiffness against the simulation")
@@ -67,14 +57,11 @@ def write_dimensions(
 ) -> None:
     """Residual of the simulation and of the chosen model against every dimension that varies."""
     varying = {k: v for k, v in overrides.items() if np.ptp(v) > 0}
-    measured, explained = _pct(analysis.measured, analysis), _pct(analysis.explained, analysis)
     with styled():
         title = "Measured minus simulated, over every dimension"
         figure, panels = panel_sheet(len(varying), title, "difference, %")
         for axes, (key, values) in zip(panels, varying.items(), strict=True):
-            _against(
-                axes, values, measured, explained, 100 * analysis.noise, bool(analysis.chosen.terms)
-            )
+            _against(axes, values, analysis, 100 * analysis.noise)
             axes.set_xlabel(_label(key))
         panel_legend(figure, panels[0].get_legend_handles_labels()[0])
         save_png(figure, path)
@@ -112,29 +99,18 @@ def write_held_out_specimens(path: Path, analysis: SpecimenAnalysis, gain: Gain)
         save_png(figure, path)
 
 
-def _against(
-    axes: Axes,
-    x: np.ndarray,
-    measured: np.ndarray,
-    explained: np.ndarray,
-    noise: np.ndarray,
-    with_model: bool,
-) -> None:
+def _against(axes: Axes, x: np.ndarray, analysis: SpecimenAnalysis, noise_pct: np.ndarray) -> None:
+    """Simulation, chosen model and measurement over x."""
     axes.axhline(0, color=PALETTE[0], lw=1.6, label="simulation")
-    if with_model:
+    if analysis.chosen.terms:
         axes.plot(
-            x,
-            explained,
-            "D",
-            ms=6,
-            mfc="none",
-            mec=PALETTE[2],
-            mew=1.8,
+            x, _pct(analysis.explained, analysis), "D", ms=6, mfc="none", mec=PALETTE[2], mew=1.8,
             label="with the identified causes",
-        )
+        )  # fmt: skip
     axes.errorbar(
-        x, measured, yerr=noise, fmt="o", ms=5, color=INK, capsize=3, lw=1.2, label="measured, ± 1σ"
-    )
+        x, _pct(analysis.measured, analysis), yerr=noise_pct, fmt="o", ms=5, color=INK, capsize=3, lw=1.2,
+        label="measured, ± 1σ",
+    )  # fmt: skip
     axes.grid(axis="y")
 
 

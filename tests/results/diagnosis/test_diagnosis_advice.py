@@ -45,7 +45,7 @@ def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
         calibration, prediction, DiagnosisOutcome("unknown", unexplained=(left,))
     )
     assert calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent")) in unknown
-    assert "unexplained; it may have changed them" in unknown
+    assert "An unexplained effect may have changed these values" in unknown
 
 
 def test_an_elastic_cause_makes_the_calibrated_compliance_a_part_of_the_slope() -> None:
@@ -79,7 +79,7 @@ def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
     found = DiagnosisOutcome("unknown")
     said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
     assert "does not reduce" not in said
-    assert "6.49 times stiffer: a straight line through it has a slope of 1.54" in said
+    assert "6.49 times stiffer: a straight line through the record has a slope of 1.54" in said
     # a compliance that follows the slope says it by itself
     moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
     said = calibrated_sentences(moved, prediction, found, SlopeRatio(0.86, 0.85, 0.87))

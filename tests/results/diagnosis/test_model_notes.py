@@ -59,7 +59,7 @@ def test_a_file_without_digests_is_compared_by_name(tmp_path: Path) -> None:
     old = replace(ORIGIN, design_digests={})
     assert said(tmp_path, old) == ()
     (line,) = said(tmp_path, replace(old, design="another"))
-    assert line.startswith(f"the model is of another, not of {DESIGN.name}; ")
+    assert line.startswith(f"the model is for another, not for {DESIGN.name}; ")
 
 
 def test_an_open_verdict_is_told_with_its_rivals(tmp_path: Path) -> None:

@@ -4,11 +4,11 @@ import pytest
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
+from written_report import write_report
 
 from flexspline.results.report.missing_letters import font_folder, printable
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 
 CHINESE = "谐波减速器 柔轮"
 PRINTED = {

@@ -8,6 +8,7 @@ from blank_pictures import blank_pictures
 from hand_made_gear import BACKLASH, K_B, K_E, content, design
 from PIL import Image
 from pypdf import PdfReader
+from written_report import write_report
 
 from flexspline.results.numbers import THIN
 from flexspline.results.report.budget import budget
@@ -21,13 +22,12 @@ from flexspline.results.report.document import (
     Pictures,
     Table,
 )
-from flexspline.results.report.pdf import pdf_of
+from flexspline.results.report.pdf import ReportError, pdf_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import plain, symbol, worded
 from flexspline.results.report.spans import words as spans_of
 from flexspline.results.report.tables import answers
 from flexspline.results.report.totals import totals_and_terms
-from flexspline.results.report.write import ReportError, write_report
 
 NASTY = [
     '#read("/etc/passwd")',
