@@ -137,8 +137,8 @@ def _gain(identification: GearIdentification) -> str:
 def _next(identification: GearIdentification) -> str:
     if identification.apart is None:
         return (
-            "no torque within the rated torque and twice the largest measured torque distinguishes them; "
-            "measure one of these inputs directly"
+            "no torque up to twice the largest measured torque, and within the rated torque, distinguishes "
+            "them; measure one of these inputs directly"
         )
     return (
         f"at {identification.apart.torque_Nm:.3g} N·m they differ by "

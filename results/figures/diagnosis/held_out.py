@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 BARS = (
     ("before", "simulation as designed", PALETTE[2]),
     ("calibrated", "calibrated", PALETTE[1]),
-    ("after", "with the identified causes", PALETTE[0]),
+    ("after", "with the causes", PALETTE[0]),
 )
 
 TITLE_LETTERS = 46

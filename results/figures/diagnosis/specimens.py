@@ -80,7 +80,7 @@ def write_held_out_specimens(path: Path, analysis: SpecimenAnalysis, gain: Gain)
         axes.axhline(0, color=MUTED, lw=0.8)
         for values, words, colour in (
             (analysis.held_out_before, "simulation as designed", PALETTE[2]),
-            (analysis.held_out, "with the identified causes", PALETTE[0]),
+            (analysis.held_out, "with the causes", PALETTE[0]),
         ):
             axes.plot(x, 100 * values, "o", ms=5.5, color=colour, label=words)
         names = plain_names(analysis.specimen)
@@ -105,7 +105,7 @@ def _against(axes: Axes, x: np.ndarray, analysis: SpecimenAnalysis, noise_pct: n
     if analysis.chosen.terms:
         axes.plot(
             x, _pct(analysis.explained, analysis), "D", ms=6, mfc="none", mec=PALETTE[2], mew=1.8,
-            label="with the identified causes",
+            label="with the causes",
         )  # fmt: skip
     axes.errorbar(
         x, _pct(analysis.measured, analysis), yerr=noise_pct, fmt="o", ms=5, color=INK, capsize=3, lw=1.2,

@@ -118,7 +118,8 @@ def test_what_the_first_design_is_warned_of_is_said_once_of_the_best() -> None:
 def test_a_warning_of_the_first_design_alone_is_said_as_its_own() -> None:
     result = begun_with(result_of((0.55, 400.0), (0.9, 400.0)), 1)
     kept = replace(result, rows=result.rows[:1])
-    assert [w[:50] for w in design_warnings(kept)] == ["start design: tooth-root "]
+    (line,) = design_warnings(kept)
+    assert line.startswith("start design: tooth-root ")
 
 
 @pytest.mark.parametrize("text", [TOLERANCE, NO_OBJECTIVE])
