@@ -17,14 +17,14 @@ from flexspline.results.folder_lock import hold, locked
 from flexspline.results.job import tell
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
-"""A disk without room is no wrong word of the command line."""
+"""A full disk is not a wrong option."""
 
 
 def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool = False) -> Path:
-    """Where `files` go: `--out`, or NAME.out beside the design; what a killed command left there goes.
+    """The folder for `files`: `--out`, or NAME.out beside the design.
 
-    It is the command's own until that ends (`folder_lock`); `shared`: with others that share it. Nothing is
-    left in it: a folder that was not there goes again at the command's end, if it is empty.
+    Files that a killed command left there are deleted. The folder is locked until the command ends
+    (`folder_lock`); `shared`: other commands may share it. A new folder that stays empty is deleted again.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def _own(folder: Path, shared: bool) -> Iterator[bool]:
 
 @contextmanager
 def _there(folder: Path) -> Iterator[None]:
-    """The folder with those above it while the context lasts; those that were missing go again."""
+    """Create the folder and those above it; at the end the new ones are deleted if they are empty."""
     missing = []
     for path in (folder, *folder.absolute().parents):
         if path.is_dir():

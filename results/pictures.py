@@ -2,7 +2,7 @@
 
 Two processes draw (`results.renders.process`): one a solved part as soon as it is there; one the charts in
 the end, without VTK.
-What cannot be drawn is missing and everything else comes; it is not kept, so the next run tries again.
+A picture that cannot be drawn is left out and not cached, so the next run tries it again.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ def _listen(receiver: socket.socket, ended: threading.Event) -> None:
         if ENDS.isdisjoint(numbers):
             continue
         if not ended.wait(AT_ONCE_S):
-            with suppress(OSError):  # whoever listened has gone
+            with suppress(OSError):  # the reader has gone
                 print(
                     "flexspline: stopping after the current step",
                     file=sys.stderr,

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.left_out import LeftOut
 
 @dataclass(frozen=True)
 class ChannelWords:
-    """A channel as a person says it.
+    """A channel in words.
 
     Attributes
     ----------

@@ -21,12 +21,13 @@ from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
-"""Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+"""Share of the simulated deviation: a record that leaves more adds at most about half of the information that
+the simulation has."""
 AS_SIMULATED_WITHIN = 0.5
 """Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
 NOT_NARROWED = "this record does not reduce the uncertainty"
-"""What is said of a value that a record leaves as open as the simulation."""
+"""Remark on a value that the record determines no better than the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
 
@@ -150,7 +151,7 @@ def _against(measured: Estimate, simulated: float, std: float, as_open: str = NO
     text = plus_minus(measured.value, measured.std)
     if not std:
         return f"{text} (simulated {simulated:.4g})"
-    if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
+    if measured.std > AS_SIMULATED * std:  # another effect may take its place
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
             return f"{text} (as simulated: {as_open})"
         if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:

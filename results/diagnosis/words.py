@@ -63,7 +63,7 @@ def sure_words(cause: NamedCause) -> str:
 
 
 def odds_words(nats: float) -> str:
-    """Evidence as odds: what "e to the nats to 1" means to a person."""
+    """Evidence as odds, e^nats to 1, in words."""
     exponent = nats / log(10)
     if exponent > 6:
         return "more than a million to 1"

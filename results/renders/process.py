@@ -1,8 +1,8 @@
 """Drawing in a separate process: if a graphics driver crashes, the program continues.
 
-The process is started for the first picture and draws more after it, so that VTK is loaded once; who draws
-much has two. What is to be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers
-are lines of JSON.
+The process is started for the first picture and draws the next ones too, so that VTK is loaded once.
+A run has two such processes. The arguments are passed in a file (`pipeline.packing`); questions and
+answers are lines of JSON.
 """
 
 from __future__ import annotations
@@ -193,7 +193,7 @@ _known: deque[tuple[bytes, tuple[Any, ...]]] = deque(maxlen=2)
 
 
 def _arguments(content: bytes) -> tuple[Any, ...]:
-    """The very objects of before where they are asked for again (`results.renders.remembered`)."""
+    """The same objects as before for the same content (`results.renders.remembered`)."""
     for packed_before, arguments in _known:
         if packed_before == content:
             return arguments

@@ -12,9 +12,9 @@ T = TypeVar("T")
 
 
 def remembered(count: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Keep the last `count` answers, each for the very objects that it was found for: arrays have no hash.
+    """Keep the last `count` results, each for the identical argument objects: arrays have no hash.
 
-    Whoever gets an answer twice gets one object: it is not changed.
+    A repeated call returns the same object, so callers must not change it.
     """
 
     def of(find: Callable[P, T]) -> Callable[P, T]:

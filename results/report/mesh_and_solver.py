@@ -83,7 +83,7 @@ def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRo
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )
     if these[0]["kind"] == GUARANTEED:
-        text += plain("These bounds are guaranteed. ")
+        text += plain("These bounds are proven. ")
     else:
         text += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]

@@ -41,13 +41,13 @@ def totals_and_terms(content: ReportContent) -> Words:
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")
         + plain(
-            ") also includes teeth, rim contact and bearing, but no clearance, like K1 in a catalogue. "
+            ") also includes teeth, rim contact and bearing, but no clearance, as in catalogues. "
         )
         + _whole_twist(curve)
         + plain(
             "Lost motion includes the clearances"
             + (", but no free angle remains here" if curve.free_angle_arcsec == 0 else "")
-            + ". None of these values includes bolts, housing or friction."
+            + ". Bolts, housing and friction are not included."
         )
     )
 
@@ -57,4 +57,4 @@ def _whole_twist(curve: GearCurve) -> Words:
     if not curve.terms_arcsec:
         return ()
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"The whole gear twists by {total} between ± T_L. ")
+    return worded(f"The gear twists by {total} between ± T_L. ")

@@ -88,15 +88,15 @@ class Tab:
             self._lanes.append(asyncio.create_task(lane))
 
     async def close(self) -> None:
-        """Stop the lanes; a question already asked is answered to nobody."""
+        """Stop the lanes; the answer to a running question is dropped."""
         for lane in self._lanes:
             lane.cancel()
         await asyncio.gather(*self._lanes, return_exceptions=True)
 
     async def want(self, number: int, tables: Mapping[str, Any], view: str) -> None:
-        """Set the lanes on a design, or refuse it with its key and reason.
+        """Give the lanes a design, or refuse it with its key and reason.
 
-        After a refusal the lanes go on with the design before, which the page still shows.
+        After a refusal the lanes continue with the previous design, which the page still shows.
         """
         try:
             design = received(tables)

@@ -35,7 +35,7 @@ ENDED = Fault("", "the process of the fast model ended; move a slider to try aga
 class Worker:
     """One process; questions queue in the order in which they are asked.
 
-    A question during which it was killed, as by a system without memory left, is asked once more.
+    If the process is killed during a question, for example for lack of memory, the question is asked again.
 
     `niceness` lowers its priority, so that a slow question does not slow the quick ones.
     """
@@ -74,8 +74,8 @@ class Worker:
     async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
         """The answer to a question of `results.studio.questions`, or a Fault.
 
-        Who stops waiting before the turn leaves the queue; whose turn has come leaves the question to
-        end by itself: the next one must not get its answer.
+        A caller that is cancelled before its turn leaves the queue. A question that has begun is not
+        cancelled: the next one would get its answer.
         """
         await self._turn.acquire()
         task = asyncio.create_task(self._answered(question, tables))

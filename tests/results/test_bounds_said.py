@@ -26,7 +26,7 @@ from flexspline.results.studio.answer import message
 FIGURES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e")
 ESTIMATE = replace(K_E, guaranteed=False, method="recovery estimate")
 """Solved on the meridian, and yet no theorem: what the lobe cases are."""
-GUARANTEE = letters("These bounds are guaranteed")
+GUARANTEE = letters("These bounds are proven")
 
 
 def found(guaranteed: tuple[str, ...]) -> Stiffnesses:

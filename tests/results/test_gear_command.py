@@ -345,8 +345,8 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
     """Less lost motion by the cone's part of the clearance, and no word of a relief."""
     straight = alone(DESIGN.changed({"gear.tooth_face": "straight"}))
     assert straight.lost_motion_arcsec < curve.lost_motion_arcsec - 30
-    assert any("opens as a cone" in line for line in gear_notes(curve))
-    assert not any("opens as a cone" in line for line in gear_notes(straight))
+    assert any("deforms to a cone" in line for line in gear_notes(curve))
+    assert not any("deforms to a cone" in line for line in gear_notes(straight))
 
 
 @pytest.mark.parametrize(

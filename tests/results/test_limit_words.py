@@ -41,7 +41,7 @@ from flexspline.results.warned import shortfalls
 def test_why_the_linear_model_ends(why: ToothTwist | ReachedStress, said: str) -> None:
     assert reason(LinearLimit(88.2, why)) == said
     without = reason(LinearLimit(88.2, why, peaks_solved=False))
-    assert without.startswith(f"{said} (without the peak stress of notches")
+    assert without.startswith(f"{said} (without the peak stress at notches")
 
 
 def test_a_load_torque_beyond_it_is_said() -> None:

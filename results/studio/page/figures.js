@@ -57,7 +57,7 @@ export class Figures {
     return this.numbers[key] !== state.number;
   }
 
-  // Of a design that cannot be built there are no figures: those of the last one that can, and of no third.
+  // If the design cannot be built, only figures of the last design that can be built are shown.
   shown() {
     const { now, pinned, solid } = this;
     if (!state.broken) return { now, pinned, solid };
@@ -94,7 +94,7 @@ export class Figures {
     this.drawGear(now.gear, pinned?.gear);
   }
 
-  // Why there is none of the design as it stands.
+  // Why the present design has no whole-gear figures.
   withoutGear({ number, text }) {
     this.noGear = { number, text };
     this.draw();

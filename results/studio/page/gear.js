@@ -1,4 +1,4 @@
-// The whole gear: its figures, who yields how much, and its curve.
+// The whole gear: its figures, shares of the compliance, and its curve.
 
 import { differenceCell, dot, frame, stack } from "./charts.js";
 import { el, svg, symbol } from "./dom.js";

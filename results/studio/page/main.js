@@ -115,7 +115,7 @@ function send() {
   link.say({ do: "want", number: state.number, tables: state.tables, view: state.view });
 }
 
-// Every figure and picture says, by its looks, whether it is of the design as it stands.
+// Every figure and picture is grey unless it belongs to the present design.
 function mark() {
   whatIsOld();
   pins.compare();
@@ -123,7 +123,7 @@ function mark() {
   stage.mark();
 }
 
-// A text that is no number: the design as it stands has no figures.
+// A text that is no number: the present design has no figures.
 function broke() {
   state.number += 1;
   state.broken = true;

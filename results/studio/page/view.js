@@ -1,4 +1,4 @@
-// The middle: the part in 3-D. It is drawn here, in the browser, so it turns without asking anybody.
+// The middle: the part in 3-D. The browser draws it, so turning needs no request.
 
 import { PartScene } from "./part_scene.js";
 import { creases, mover, revolved } from "./shape.js";

@@ -42,7 +42,7 @@ def test_letters_without_a_font_are_replaced_and_said(tmp_path, bare):
     text = pdf_letters(tmp_path / "r.pdf")
     assert empty_boxes(tmp_path / "r.pdf") == 0
     assert "".join(f"[U+{ord(c):04X}]" for c in CHINESE.split()[-1]) in text
-    assert letters("7 different letters of names or notes cannot be printed") in text
+    assert letters("7 different letters in names or notes cannot be printed") in text
     assert not set(CHINESE.replace(" ", "")) & set(text)
     assert CHINESE in PdfReader(tmp_path / "r.pdf").metadata.title
     shown, _, _ = read_page(page_of(run_document(made), {}).decode())
