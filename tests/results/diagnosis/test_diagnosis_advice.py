@@ -33,7 +33,7 @@ def test_nothing_is_asked_for_that_a_rig_cannot_do(channel: str) -> None:
     """With the wave generator locked the output angle is the answer: it cannot be varied alone."""
     form = (UnnamedForm("ripple" if channel == "angle_arcsec" else "leading"),)
     said = why(NextMeasurement(channel, "find_structure", structure=form), "sweep")
-    assert "vary it alone" not in said
+    assert "vary only this channel" not in said
     assert "housing" in said or "hold it" in said
 
 

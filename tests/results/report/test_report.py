@@ -241,7 +241,7 @@ def test_no_total_is_taken_for_another(tmp_path):
     first = re.sub(r"\s+", " ", PdfReader(tmp_path / "r.pdf").pages[0].extract_text())
     for words in ("Totals and terms.", "includes only flexspline and shaft", "of the whole gear (section 4)",
                   "clearances (section 3)", "friction are not included",
-                  "The gear twists by 237.0 arcsec between", "bearing in series"):  # fmt: skip
+                  "The gear twists by 237.0 arcsec between", "rim contact and bearing"):  # fmt: skip
         assert words in first, words
     write_report(tmp_path / "r.pdf", content(gear=None, gear_missing="no equilibrium"))
     text, _ = text_of(tmp_path / "r.pdf")
