@@ -41,8 +41,8 @@ def _outside(rows: RowsBeyond) -> str:
     if rows.channel == "torque_amplitude":
         in_file, in_record = (f"{_limit(s):.4g} N·m" for s in (rows.here, rows.there))
         return (
-            f"are in cycles smaller than measured: the smallest cycle of this file reaches {in_file}, of the "
-            f"model's record {in_record}; the friction of small loops is less certain"
+            f"are in cycles smaller than measured: the smallest cycle reaches {in_file} in this file and "
+            f"{in_record} in the model's record; the friction of small loops is less certain"
         )
     if rows.channel == "torque_rate":
         in_file, in_record = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
