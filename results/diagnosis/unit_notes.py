@@ -24,14 +24,14 @@ def unit_notes(analysis: SweepAnalysis) -> list[str]:
     return [*_share_notes(analysis.explained), *_size_notes(analysis.model)]
 
 
-def _apart_notes(apart: UnitsApart) -> list[str]:
+def _apart_notes(separate: UnitsApart) -> list[str]:
     """What each unit shows by itself, and which one the figures are of."""
     notes = [
         "the units differ, so each was diagnosed separately; figures, calibrated values, errors on held-out "
-        f"rows and the extended model are those of {apart.unit}"
+        f"rows and the extended model are those of {separate.unit}"
     ]
     return notes + [
-        f"{name} alone: {_decided(decision)}" for name, decision in apart.decisions.items()
+        f"{name} alone: {_decided(decision)}" for name, decision in separate.decisions.items()
     ]
 
 

@@ -47,10 +47,10 @@ export class Figures {
 
   // The answers that belong to one design, and no other's.
   of(number) {
-    const own = (row) => (this.numbers[row.key] === number ? row : waiting(row));
+    const known = (row) => (this.numbers[row.key] === number ? row : waiting(row));
     const whole = this.numbers[DRAWN] === number ? this.now : { budget: null, line: null };
     const gear = this.numbers[GEAR] === number ? this.now.gear : null;
-    return { stiffness: this.now.stiffness.map(own), peaks: this.now.peaks.map(own), budget: whole.budget, line: whole.line, gear };
+    return { stiffness: this.now.stiffness.map(known), peaks: this.now.peaks.map(known), budget: whole.budget, line: whole.line, gear };
   }
 
   stale(key) {

@@ -43,8 +43,8 @@ export class View extends PartScene {
     const [r, z] = [Math.hypot(at[0], at[1]), at[2]];
     let near = 0;
     for (let i = 0, best = Infinity; i < places.length / 2; i++) {
-      const apart = (places[2 * i] - r) ** 2 + (places[2 * i + 1] - z) ** 2;
-      if (apart < best) [best, near] = [apart, i];
+      const distance = (places[2 * i] - r) ** 2 + (places[2 * i + 1] - z) ** 2;
+      if (distance < best) [best, near] = [distance, i];
     }
     const out = [0, 0, 0];
     const angle = Math.atan2(at[1], at[0]);
