@@ -43,7 +43,7 @@ def write_stiffness(path: Path, analysis: SpecimenAnalysis) -> None:
             x[::step], names[::step], rotation=40 if long else 0, ha="right" if long else "center"
         )
         axes.set_xlabel("specimen")
-        axes.set_ylabel("difference from simulated in %")
+        axes.set_ylabel("difference from simulation in %")
         titled(figure, 0.945, "Measured stiffness against the simulation")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 0.865), ncols=4, fontsize=9, columnspacing=1.3,
