@@ -13,7 +13,7 @@ from flexspline.geometry.signals import held_signals
 from flexspline.pipeline.temporary_files import unfinished, write_unfinished
 
 UMASK = os.umask(0o077)
-"""What the user keeps from others; it can be read only by setting it."""
+"""The user's file mode mask; it can be read only by setting it."""
 os.umask(UMASK)
 
 
@@ -22,7 +22,7 @@ def write_bytes(path: Path, data: bytes) -> None:
 
     Raises
     ------
-    OSError : with the path's name; what was there before still is.
+    OSError : with the path's name; the earlier file is unchanged.
     """
     path = Path(path)
     write_together(path.parent, {path.name: data})
@@ -31,11 +31,11 @@ def write_bytes(path: Path, data: bytes) -> None:
 def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     """Write all files beside their places, then move them there in one go; their paths.
 
-    A request to end that comes while they are moved waits until the last one is.
+    A request to end during the moves waits until the last file is moved.
 
     Raises
     ------
-    OSError : with the path's name; what was there before still is; nothing is moved where one file cannot be
+    OSError : with the path's name; the earlier files are unchanged. Nothing is moved if one file cannot be
         replaced.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -62,7 +62,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Faults name the file of the answer; those of a full disk name none, others an unfinished one."""
+    """Errors name the final file; the system's name no file (a full disk) or the unfinished one."""
     try:
         yield
     except OSError as fault:
@@ -81,9 +81,9 @@ def refuse_fixed(path: Path) -> None:
     except FileNotFoundError:
         return
     if stat.S_ISDIR(there.st_mode):
-        raise OSError(errno.EISDIR, "is a folder, where a file is to be written", str(path))
+        raise OSError(errno.EISDIR, "is a folder, but a file must be written there", str(path))
     above = path.parent.stat()
     sticky = bool(above.st_mode & stat.S_ISVTX) and hasattr(os, "geteuid")
     if sticky and os.geteuid() not in (0, there.st_uid, above.st_uid):
-        reason = "belongs to another user, whose files this folder keeps"
+        reason = "belongs to another user, and this folder does not allow to replace it"
         raise OSError(errno.EPERM, reason, str(path))

@@ -97,9 +97,9 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
         from flexspline.pipeline.second_process import second_process
 
         with second_process():
-            found = stiffnesses(job.context)
-        keep(job, found, json)
-        found.require(job.design)
+            solved = stiffnesses(job.context)
+        keep(job, solved, json)
+        solved.require(job.design)
 
 
 @app.command()

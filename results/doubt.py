@@ -45,10 +45,10 @@ def spread_sentence(backlash: Backlash) -> str:
     """One standard deviation of the sum, and what it leaves out; without a full stop."""
     if backlash.std_arcsec is None:
         return "the design file states no uncertainty, so the sum has no standard deviation"
-    said = quantity(STD_KEY).with_unit(backlash.std_arcsec)
+    std = quantity(STD_KEY).with_unit(backlash.std_arcsec)
     left_out = missing(backlash)
     without = f", with {joined(left_out, 'and')} {NOT_STATED}" if left_out else ""
-    return f"one standard deviation of the sum is {said}{without}"
+    return f"one standard deviation of the sum is {std}{without}"
 
 
 def as_stated(value: float, std: float, unit: str) -> str:

@@ -26,14 +26,14 @@ saves 3 % of `flexspline run examples/xb1-40.toml` and takes no more memory."""
 
 def main() -> None:
     """Entry point of the console script."""
-    asked: list[int] = []
+    signals: list[int] = []
     for name, value in THREADS.items():  # before the libraries are loaded, which read it once
         os.environ.setdefault(name, value)
     os.environ.update(CHARTS)
     gc.set_threshold(NEW_OBJECTS)
 
     def end(number: int, frame: object) -> None:
-        asked.append(number)
+        signals.append(number)
         raise KeyboardInterrupt
 
     try:
@@ -49,9 +49,9 @@ def main() -> None:
                 app()
     except KeyboardInterrupt:
         print("flexspline: interrupted", file=sys.stderr)
-        raise SystemExit(TERMINATED if asked else INTERRUPTED) from None
+        raise SystemExit(TERMINATED if signals else INTERRUPTED) from None
     except SystemExit as ended:
-        if asked and ended.code == INTERRUPTED:
+        if signals and ended.code == INTERRUPTED:
             raise SystemExit(TERMINATED) from None
         raise
     finally:

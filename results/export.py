@@ -13,7 +13,6 @@ from flexspline.fea.types import SolidField
 from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.part import Part
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.part_stiffness import turned_field, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -41,13 +40,7 @@ def write_exports(
     models = (context.part("flexspline"), context.part("shaft"))
     for model in models:
         model.refuse_settings()
-    for part in context.design.parts:
-        with context.progress.stage(f"CAD of the whole {part.name}"):
-            solid = build_solid(part)
-            step = partial(write_step, solid, name=_product(context.design, part))
-            done.append(write_whole(folder / f"{part.name}.step", step))
-            stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
-            done.append(write_whole(folder / f"{part.name}.stl", stl))
+    done += write_cad(context.design, folder, context.progress, stl=True)
     for model in models:
         done += _write_meshes(model, folder, formats)
         done += [_write_deck(model, folder)] if deck else []
@@ -57,19 +50,18 @@ def write_exports(
     return [*done, _write_field(models[0], wave_generator, ellipse_field, "symmetric")]
 
 
-def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:
-    """Both whole parts as STEP [mm]; nothing is solved."""
+def write_cad(design: Design, folder: Path, progress: Progress, stl: bool = False) -> list[Path]:
+    """Both whole parts as STEP [mm], and as `stl` where wanted; nothing is solved."""
     done = []
     for part in design.parts:
         with progress.stage(f"CAD of the whole {part.name}"):
-            step = partial(write_step, build_solid(part), name=_product(design, part))
+            solid = build_solid(part)
+            step = partial(write_step, solid, name=plain(f"{design.name}, {part.name}"))
             done.append(write_whole(folder / f"{part.name}.step", step))
+            if stl:
+                triangles = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
+                done.append(write_whole(folder / f"{part.name}.stl", triangles))
     return done
-
-
-def _product(design: Design, part: Part) -> str:
-    """Of a STEP file."""
-    return plain(f"{design.name}, {part.name}")
 
 
 def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list[Path]:

@@ -20,7 +20,7 @@ _COMMAND: ContextVar[ExitStack | None] = ContextVar("command", default=None)
 
 @contextmanager
 def held_until_the_end() -> Iterator[None]:
-    """A command: what it holds by `hold` is let go at its end."""
+    """A command; contexts entered by `hold` are left at its end."""
     with ExitStack() as stack:
         before = _COMMAND.set(stack)
         try:
@@ -40,9 +40,9 @@ def hold(context: AbstractContextManager[T]) -> T:
 
 @contextmanager
 def locked(folder: Path, shared: bool = False) -> Iterator[bool]:
-    """Whether nobody else writes to the folder; it stays so while the context lasts.
+    """Lock the folder while the context lasts; yields False if another command has it.
 
-    `shared`: with others that ask so. Where the system locks no folders, the answer is yes.
+    `shared`: together with others that ask for it. Yields True if the system cannot lock folders.
 
     Raises
     ------

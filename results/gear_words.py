@@ -36,27 +36,27 @@ if TYPE_CHECKING:
 
 ENDS = {"ratchets": "the gear ratchets", "buckles": "the flexspline's tube buckles"}
 PLAIN_NOTES: Mapping[PlainGearNote, str] = {
-    "play_beside_stroke": "bearing play makes the free angle smaller here, as the plug's stroke is not "
-    "m(z2 - z1)/2: read bearing_play and tight_gear together",
+    "play_beside_stroke": "bearing play reduces the free angle here, because the plug's stroke is not "
+    "m(z2 - z1)/2: use the terms bearing_play and tight_gear only together",
     "no_ratcheting": "no torque was found at which the gear ratchets",
     "tube_yields_first": "the flexspline's tube is short or thick: it yields before it buckles",
     "tube_buckles_first": "the flexspline's tube buckles before the gear ratchets: the ratcheting torque "
     "lies above the buckling torque",
-    "both_limits_alike": "buckling torque and ratcheting torque are computed separately; rounded to two "
-    "digits they happen to be equal",
-    "ratcheting_is_upper": "the ratcheting torque is an upper limit, as the model is elastic; catalogues' "
-    "gears ratchet at 1/50 (ratio 30) to 1/5 (ratio 160) of it",
+    "both_limits_alike": "buckling torque and ratcheting torque are computed separately; they are equal only "
+    "because both are rounded to two digits",
+    "ratcheting_is_upper": "the ratcheting torque is an upper limit, because the model is elastic; gears in "
+    "catalogues ratchet at 1/50 (ratio 30) to 1/5 (ratio 160) of this torque",
 }
 
 
 def gear_warnings(curve: GearCurve) -> list[str]:
     """What makes it a gear that was not intended."""
-    return [_warning(each) for each in curve.warnings]
+    return [_warning(warning) for warning in curve.warnings]
 
 
 def gear_notes(curve: GearCurve) -> list[str]:
     """What was simplified."""
-    return [_note(each) for each in curve.notes]
+    return [_note(note) for note in curve.notes]
 
 
 def _warning(warning: GearWarning) -> str:
@@ -68,25 +68,25 @@ def _warning(warning: GearWarning) -> str:
                 "terms of the backlash sum do not apply"
             )
         case CuttingFlanks(shape, start, overlap, most, depth):
-            said = (
-                f"{shape} flanks cut into each other from {start:.0f}° off the major axis on, by up "
-                f"to {_rounded(overlap)} µm at {most:.0f}°: use the relieved shape or more clearance"
+            text = (
+                f"{shape} flanks interfere at {start:.0f}° and more from the major axis, by up to "
+                f"{_rounded(overlap)} µm at {most:.0f}°: use the relieved shape or more clearance"
             )
             if depth is None:
-                return said
-            return f"{said}, or make the working depth less than {depth:.3g} mm"
+                return text
+            return f"{text}, or make the working depth less than {depth:.3g} mm"
         case LoadBeyondRated(load, rated):
             return (
                 f"load.torque_Nm = {load:g} is {load / rated:.3g} times the "
-                "rated torque: teeth and rim are not elastic there"
+                "rated torque: teeth and rim do not stay elastic at this torque"
             )
         case EarlyEnd(end, torque, rated):
-            said = f"{ENDS[end]} at about {_rounded(torque)} N·m"
-            return f"{said}, below the rated torque of {plain_number(rated, 4)} N·m"
+            text = f"{ENDS[end]} at about {_rounded(torque)} N·m"
+            return f"{text}, below the rated torque of {plain_number(rated, 4)} N·m"
         case "play_closes_gap":
             return (
-                "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
-                "teeth beside the major axis touch first. This is not an improvement: reduce the play"
+                "more bearing play reduces the free angle here: the play reduces the rim's stroke so far "
+                "that teeth beside the major axis touch first. This is not an improvement: reduce the play"
             )
         case _:
             assert_never(warning)
@@ -102,7 +102,7 @@ def _why_pressing(pressing: PressingFlanks) -> str:
                 "the major axis then touch"
             )
         case "flanks_cut":
-            return "the flanks cut into each other"
+            return "the flanks interfere"
         case TightFlanks(front, back):
             return (
                 f"front flanks press at {front:.0f}°, back flanks at {back:.0f}° from the major axis; the "
@@ -118,24 +118,25 @@ def _note(note: GearNote) -> str:
     match note:
         case HalvedBalls(count, computed):
             return (
-                f"the model has {computed} balls instead of {count}: an even number, half of them at each "
-                "lobe"
+                f"the model has {computed} balls instead of {count}: it needs an even number, one half for "
+                "each lobe"
             )
         case LowRatio(limit):
             return (
-                f"below a ratio of {limit:g} the model is too stiff: catalogues' gears of ratio 30 are about "
-                "half as stiff as the model with thicknesses in proportion to the pitch radius "
+                f"below a ratio of {limit:g} the model is too stiff: gears of ratio 30 in catalogues are "
+                "about half as stiff as the model if its thicknesses are in proportion to the pitch radius "
                 "(docs/whole-gear.md)"
             )
         case RelievedFlanks(start, removed, end):
             return (
-                f"beyond {start:.0f}° from the major axis the gap of straight flanks would decrease "
-                f"again: relieved flanks are assumed, {_rounded(removed)} µm removed from each at {end:.0f}°"
+                f"beyond {start:.0f}° from the major axis the gap of straight flanks would decrease again; "
+                f"relieved flanks are assumed, with {_rounded(removed)} µm removed from each flank at "
+                f"{end:.0f}°"
             )
         case ShapedFaces(removed):
             return (
-                "the rim opens as a cone: teeth relieved along their face are assumed, by up to "
-                f'{_rounded(removed)} µm at the ends; gear.tooth_face = "straight" computes straight teeth'
+                "the rim deforms to a cone; teeth relieved along the face width are assumed, by up to "
+                f'{_rounded(removed)} µm at the ends; gear.tooth_face = "straight" selects straight teeth'
             )
         case StraightFlanks(angle):
             return (
@@ -145,34 +146,34 @@ def _note(note: GearNote) -> str:
         case LoadedLastPair(at):
             return (
                 f"the last pair of teeth within the working depth, {at:.0f}° from "
-                "the major axis, carries a large force, which depends on gear.working_depth_mm; do not "
-                "size teeth by this force; K2 and K3 depend on it too"
+                "the major axis, carries a large force; this force, K2 and K3 depend on "
+                "gear.working_depth_mm; do not size teeth by this force"
             )
         case TwoTorques(load, lost_motion):
             return (
                 f"the terms are computed at load.torque_Nm = {load:g}, the lost motion at "
-                f"{plain_number(lost_motion, 4)} N·m, {LOST_MOTION_TORQUE}: the terms' sum is not the lost "
-                "motion"
+                f"{plain_number(lost_motion, 4)} N·m ({LOST_MOTION_TORQUE}), so the sum of the terms is not "
+                "the lost motion"
             )
         case JointClearances(alone, term):
             return (
-                f"flank clearance and bearing play act together: without the play alone the free angle is "
-                f"{_rounded(alone)} arcsec smaller; the terms remove the flank clearance first, so the term "
-                f"of the play is {_rounded(term)} arcsec"
+                "flank clearance and bearing play interact: if only the play is removed, the free angle "
+                f"decreases by {_rounded(alone)} arcsec; the terms remove the flank clearance first, so the "
+                f"term of the play is {_rounded(term)} arcsec"
             )
         case FallingStiffness(lower, higher, share, preload):
-            said = (
-                f"{lower} is {100 * share:.2g} % below {higher}: the gear is softer at larger torque, "
-                "where catalogues' gears are stiffer"
+            text = (
+                f"{lower} is {100 * share:.2g} % below {higher}: this gear becomes softer at larger torque, "
+                "but gears in catalogues become stiffer"
             )
             if not preload:
-                return said
-            return f"{said}. Here both flanks press without torque, and together they are stiffer than one"
+                return text
+            return f"{text}. Here both flanks press without torque, and two flanks are stiffer than one"
         case BucklingTube(torque, stress):
             return (
                 f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "
-                f"where its shear stress is {_rounded(stress)} MPa; a wall of lower yield stress fails "
-                "earlier; catalogues' gears ratchet at 0.3 to 0.8 of their buckling torque"
+                f"where its shear stress is {_rounded(stress)} MPa; a wall with a lower yield stress fails "
+                "earlier; gears in catalogues ratchet at 0.3 to 0.8 of their buckling torque"
             )
         case _:
             assert_never(note)

@@ -30,11 +30,11 @@ LONGEST_LINE = 2000
 def tell(line: str) -> None:
     """One line of progress or warning, its control characters escaped.
 
-    Threads speak too: the line and its end are one write, or another's line would come between them.
+    Line and line end are one write: several threads print, and lines must not mix.
     """
     from flexspline.geometry.errors import one_line
 
-    with suppress(OSError):  # whoever listened has gone: no reason to stop
+    with suppress(OSError):  # the reader has gone: no reason to stop
         print(f"{one_line(line, LONGEST_LINE)}\n", end="", file=sys.stderr, flush=True)
 
 
@@ -90,7 +90,7 @@ class Job:
 
     @cached_property
     def context(self) -> AnalysisContext:
-        """The design with the cache; asked for where something is solved, as that loads the solvers."""
+        """The design with the cache; created only where something is solved, because it loads the solvers."""
         from flexspline.pipeline.analysis import analysis_context
 
         return analysis_context(self.design, tell, self.progress)
@@ -125,7 +125,7 @@ def deliver(job: Job, record: dict[str, Any], as_json: bool) -> None:
 
 
 def put(folder: Path, record: dict[str, Any]) -> None:
-    """Write result.json; say where a fuller one that was there is kept."""
+    """Write result.json; say where an earlier one with more figures is kept."""
     from flexspline.results.earlier import write_result
 
     if note := write_result(folder, record):
@@ -146,35 +146,35 @@ def present(job: Job, record: dict[str, Any], as_json: bool) -> None:
         show(table(record, job.folder, notes))
 
 
-def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
-    """result.json with the stiffnesses that there are; what they lack is told."""
+def keep(job: Job, stiffnesses: Stiffnesses, as_json: bool) -> None:
+    """Write and print result.json with the computed stiffnesses, and warn of missing ones."""
     from flexspline.results.records import heading, stiffness_record
 
-    warn(job.design, found)
-    record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
+    warn(job.design, stiffnesses)
+    record = {**heading(job.design), **stiffness_record(job.design, stiffnesses, job.wall_s)}
     deliver(job, record, as_json)
 
 
 def warn(
-    design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
+    design: Design, stiffnesses: Stiffnesses, fields: Mapping[str, SolidField] | None = None
 ) -> None:
     """A line on stderr for each figure that missed its tolerance, or is missing."""
     from flexspline.results.warned import shortfalls
 
-    tell_all(shortfalls(design, found, fields))
+    tell_all(shortfalls(design, stiffnesses, fields))
 
 
 def tell_all(warnings: Iterable[str]) -> list[str]:
     """A line on stderr for each warning; the same again, for result.json."""
-    said = list(warnings)
-    for line in said:
+    lines = list(warnings)
+    for line in lines:
         tell(f"warning: {line}")
-    return said
+    return lines
 
 
 @contextmanager
 def kept(job: Job, as_json: bool) -> Iterator[None]:
-    """Where a figure that the answer needs failed, keep the others before the error goes on."""
+    """If a necessary figure failed, write the others before the error is raised."""
     from flexspline.pipeline.stiffnesses import NotFoundError
 
     try:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.stress_limits import PassedLimit
 
 NOT_SOLVED = (
-    "without the peak stress of notches, which `flexspline run` computes and which may lower it"
+    "without the peak stress at notches; `flexspline run` includes it and may lower the limit"
 )
 
 
@@ -31,8 +31,8 @@ def beside_figure(passed: PassedLimit) -> str:
     if passed.key:
         return f"above the fatigue limit of {passed.limit_MPa:g} MPa"
     return (
-        f"beyond {passed.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model "
-        "does not hold"
+        f"above {passed.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model is not "
+        "valid"
     )
 
 
@@ -43,7 +43,7 @@ def passed_line(passed: PassedLimit) -> str:
     if passed.peak.at_excluded_border:
         far = passed.peak.exclusion_mm
         place = "at" if far is None else f"{far:.3g} mm from"
-        figure += f" ({place} an edge towards which the stress still rises)"
+        figure += f" ({place} an edge; the stress still rises towards this edge)"
     where = f" ({passed.key})" if passed.key else ""
     return f"{figure} is {beside_figure(passed)}{where}"
 
@@ -53,23 +53,23 @@ def reason(limit: LinearLimit) -> str:
     why = limit.why
     match why:
         case ToothTwist(teeth):
-            said = f"the twist reaches one tooth, 360°/{teeth}"
+            text = f"the twist reaches one tooth pitch, 360°/{teeth}"
         case ReachedStress():
-            said = f"{_place(why)} under torque alone reaches {_stress(why)}"
+            text = f"{_place(why)} under torque alone reaches {_stress(why)}"
         case _:
             assert_never(why)
     if not limit.peaks_solved:
-        return f"{said} ({NOT_SOLVED})"
+        return f"{text} ({NOT_SOLVED})"
     parts = joined((f"the {part}'s peak" for part in limit.not_counted), "and")
-    return f"{said} ({parts}, {BORDER}, not counted)" if parts else said
+    return f"{text} (not counted: {parts}, {BORDER})" if parts else text
 
 
 def load_beyond(limit: LinearLimit, design: Design) -> Iterator[str]:
     """A line where the load torque is beyond the limit."""
     if design.load.torque_Nm > limit.torque_Nm:
         yield (
-            f"load.torque_Nm = {design.load.torque_Nm:g} is beyond {limit.torque_Nm:.3g} N·m, where "
-            f"{reason(limit)}: the linear model is not valid there"
+            f"load.torque_Nm = {design.load.torque_Nm:g} exceeds {limit.torque_Nm:.3g} N·m, the torque limit "
+            f"of the linear model: there {reason(limit)}"
         )
 
 

@@ -61,15 +61,15 @@ class PatchedMesh:
         """The part in the round from its sector; planes of symmetry are inside it and no patches."""
         whole = unloaded_part(mesh)
         inside = ("", SYMMETRY_START, SYMMETRY_END)
-        found = [i for i, name in enumerate(whole.patches) if name not in inside]
-        cell, face = np.nonzero(np.isin(whole.face_patch, found))
+        outer = [i for i, name in enumerate(whole.patches) if name not in inside]
+        cell, face = np.nonzero(np.isin(whole.face_patch, outer))
         return cls(
             part,
             whole.nodes,
             whole.cells,
             whole.cells[cell[:, None], FACES[face]],
-            np.searchsorted(found, whole.face_patch[cell, face]),
-            tuple(whole.patches[i] for i in found),
+            np.searchsorted(outer, whole.face_patch[cell, face]),
+            tuple(whole.patches[i] for i in outer),
         )
 
     @property
@@ -97,19 +97,19 @@ def chosen_formats(words: Sequence[str]) -> tuple[str, ...]:
     ------
     DesignError : an unknown one, or one whose library is not installed.
     """
-    asked = tuple(dict.fromkeys(f.strip() for word in words for f in word.split(",")))
-    for name in asked:
+    formats = tuple(dict.fromkeys(f.strip() for word in words for f in word.split(",")))
+    for name in formats:
         if name in ALWAYS:
             others = f"--format adds mesh files: one of {', '.join(FORMATS)}"
             raise DesignError("--format", name, f"STEP and STL are always written; {others}")
         if name not in FORMATS:
             raise DesignError("--format", name, f"must be one of {', '.join(FORMATS)}")
-    lacking = [name for name in asked if name in NEED_H5PY]
+    lacking = [name for name in formats if name in NEED_H5PY]
     if lacking and find_spec("h5py") is None:
         need = "needs" if len(lacking) == 1 else "need"
         reason = f'{need} h5py, which is not installed: pip install "flexspline[hdf5]"'
         raise DesignError("--format", ",".join(lacking), reason)
-    return asked
+    return formats
 
 
 def write_mesh(mesh: PatchedMesh, path: Path) -> None:

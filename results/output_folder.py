@@ -17,14 +17,14 @@ from flexspline.results.folder_lock import hold, locked
 from flexspline.results.job import tell
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
-"""A disk without room is no wrong word of the command line."""
+"""A full disk is not a wrong option."""
 
 
 def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool = False) -> Path:
-    """Where `files` go: `--out`, or NAME.out beside the design; what a killed command left there goes.
+    """The folder for `files`: `--out`, or NAME.out beside the design.
 
-    It is the command's own until that ends (`folder_lock`); `shared`: with others that share it. Nothing is
-    left in it: a folder that was not there goes again at the command's end, if it is empty.
+    Files that a killed command left there are deleted. The folder is locked until the command ends
+    (`folder_lock`); `shared`: other commands may share it. A new folder that stays empty is deleted again.
 
     Raises
     ------
@@ -44,9 +44,7 @@ def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool =
         reason = f"cannot be {verb} ({fault.strerror}); name another folder"
         raise DesignError("--out", str(folder), reason) from None
     if not free:
-        reason = (
-            "another flexspline command writes there now; wait for its end, or name another folder"
-        )
+        reason = "another flexspline command is writing there; wait until it ends, or name another folder"
         raise DesignError("--out", str(folder), reason)
     discard(folder, tell)
     for name in files:
@@ -69,17 +67,17 @@ def _own(folder: Path, shared: bool) -> Iterator[bool]:
 
 @contextmanager
 def _there(folder: Path) -> Iterator[None]:
-    """The folder with those above it while the context lasts; those that were missing go again."""
+    """Create the folder and those above it; at the end the new ones are deleted if they are empty."""
     missing = []
-    for each in (folder, *folder.absolute().parents):
-        if each.is_dir():
+    for path in (folder, *folder.absolute().parents):
+        if path.is_dir():
             break
-        missing.append(each)
+        missing.append(path)
     with ExitStack() as made:
-        for each in reversed(missing):
+        for path in reversed(missing):
             with suppress(FileExistsError):  # another command was faster, or `..` led back
-                each.mkdir()
-                made.callback(_removed, each)
+                path.mkdir()
+                made.callback(_removed, path)
         yield
 
 

@@ -14,18 +14,18 @@ from flexspline.results.quantities import quantity
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""
 MEANING = (
-    "the stress still rises towards such an edge, so the figure depends on the excluded distance and "
-    "is not a measure of the part's strength"
+    "the stress still rises towards this edge, so the value depends on the excluded distance and is not a "
+    "measure of the part's strength"
 )
 
 
 def border_note(exclusion_mm: float, twice_MPa: float | None) -> str:
     """The mark, the distance left out, and what the peak is at twice of it."""
-    said = f"{BORDER}, {exclusion_mm:.3g} mm from an edge"
+    text = f"{BORDER}, {exclusion_mm:.3g} mm from an edge"
     if twice_MPa is None:
-        return said
+        return text
     twice = quantity("torque_peak_mises_MPa").with_unit(twice_MPa)
-    return f"{said} ({twice} at {2 * exclusion_mm:.3g} mm)"
+    return f"{text} ({twice} at {2 * exclusion_mm:.3g} mm)"
 
 
 def marked(figures: Mapping[str, Any], key: str) -> str:

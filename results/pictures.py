@@ -2,7 +2,7 @@
 
 Two processes draw (`results.renders.process`): one a solved part as soon as it is there; one the charts in
 the end, without VTK.
-What cannot be drawn is missing and everything else comes; it is not kept, so the next run tries again.
+A picture that cannot be drawn is left out and not cached, so the next run tries it again.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class RunDrawings:
         self._of_parts, self._of_charts = (
             _Line(DrawingProcess(gave_up=given_up)) for _ in range(2)
         )
-        self._asked: list[tuple[Drawing, Future[bytes]]] = []
+        self._requested: list[tuple[Drawing, Future[bytes]]] = []
         self._small: dict[str, Future[bytes]] = {}
 
     def __enter__(self) -> RunDrawings:
@@ -100,7 +100,7 @@ class RunDrawings:
     def add(self, drawings: Iterable[Drawing]) -> None:
         """Begin to draw these, in this order, after what was asked before; charts beside all else."""
         for drawing in drawings:
-            self._asked.append((drawing, self._begin(drawing)))
+            self._requested.append((drawing, self._begin(drawing)))
 
     def kept_in(self, folder: Path) -> RunPictures:
         """Wait for all, and write the pictures.
@@ -110,7 +110,7 @@ class RunDrawings:
         paths: dict[str, Path] = {}
         views: dict[str, bytes] = {}
         missing: dict[str, str] = {}
-        for drawing, made in self._asked:
+        for drawing, made in self._requested:
             name, path = drawing.name, folder / f"{drawing.name}.png"
             if drawing.kind == "view" and name not in paths:
                 continue  # the picture stands where scripts do not run

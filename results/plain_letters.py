@@ -38,7 +38,7 @@ def plain(text: str) -> str:
 
 def escaped(json_text: str) -> str:
     """JSON in ASCII that says the same."""
-    return re.sub(r"[^\x00-\x7f]", lambda found: json.dumps(found[0])[1:-1], json_text)
+    return re.sub(r"[^\x00-\x7f]", lambda match: json.dumps(match[0])[1:-1], json_text)
 
 
 def _plain(letter: str) -> str:

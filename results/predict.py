@@ -52,8 +52,8 @@ def predict(
     ...     model, history = Path(folder, "extended_model.toml"), Path(folder, "history.csv")
     ...     _ = model.write_text(written, encoding="utf-8")
     ...     _ = history.write_text("torque_Nm\\n1\\n-1\\n", encoding="utf-8")
-    ...     found = predict(model, history)
-    >>> found.angle_arcsec.tolist()
+    ...     predicted = predict(model, history)
+    >>> predicted.angle_arcsec.tolist()
     [40.0, -40.0]
     """
     from flexspline.geometry.input_file import file_name
@@ -62,5 +62,5 @@ def predict(
     from flexspline.results.diagnosis.predicted import PredictedWithWarnings
 
     read = read_model_file(file_name(model, "model"))
-    found = predict_file(read, file_name(path, "measured data"), counts_per_turn)
-    return PredictedWithWarnings(**vars(found))
+    predicted = predict_file(read, file_name(path, "measured data"), counts_per_turn)
+    return PredictedWithWarnings(**vars(predicted))

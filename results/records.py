@@ -36,31 +36,31 @@ def heading(design: Design) -> Record:
     return {"design": design.name, "version": __version__}
 
 
-def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Record:
+def stiffness_record(design: Design, stiffnesses: Stiffnesses, wall_s: float) -> Record:
     """K of every load case that was solved, with bounds, and how it was solved."""
     record: Record = {}
-    for name, stiffness in found.solved.items():
+    for name, stiffness in stiffnesses.solved.items():
         record |= bounded_record(name, stiffness)
-    if found.wave_generator_peak is not None:
-        record |= peak_record("wave_generator_peak", found.wave_generator_peak)
-        record["stress_excluded"] = found.wave_generator_peak.excluded
-    if found.half_seat_peak is not None:
+    if stiffnesses.wave_generator_peak is not None:
+        record |= peak_record("wave_generator_peak", stiffnesses.wave_generator_peak)
+        record["stress_excluded"] = stiffnesses.wave_generator_peak.excluded
+    if stiffnesses.half_seat_peak is not None:
         record["wave_generator_seat_width_mm"] = design.flexspline.ring_width_mm
-        half = found.half_seat_peak.mises_MPa
+        half = stiffnesses.half_seat_peak.mises_MPa
         record["wave_generator_peak_half_seat_mises_MPa"] = half
-    if found.ring is not None:
-        record |= _ring(design, found.ring)
-    if found.has_sum(design):
-        record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
+    if stiffnesses.ring is not None:
+        record |= _ring(design, stiffnesses.ring)
+    if stiffnesses.has_sum(design):
+        record["K_series_Nm_per_rad"] = stiffnesses.series_Nm_per_rad(design)
     solver = {
-        part: _solver(found[K])
+        part: _solver(stiffnesses[K])
         for part, K in (("flexspline", "K_b"), ("shaft", "K_e"))
-        if K in found.solved
+        if K in stiffnesses.solved
     }
     # these flat figures are the flexspline's, or the shaft's where that alone was solved
     flat = next(iter(solver.values()), {})
     record["solver"] = {**flat, "wall_s": round(wall_s, 3), "parts": solver}
-    record["warnings"] = [*warnings(design), *shortfalls(design, found)]
+    record["warnings"] = [*warnings(design), *shortfalls(design, stiffnesses)]
     return record
 
 
@@ -140,8 +140,8 @@ def linear_limit_record(limit: LinearLimit) -> Record:
 
 def mass_record(design: Design) -> Record:
     """What both parts weigh, without teeth."""
-    found = masses(design)
-    return {"flexspline_mass_g": found.flexspline_g, "shaft_mass_g": found.shaft_g}
+    mass = masses(design)
+    return {"flexspline_mass_g": mass.flexspline_g, "shaft_mass_g": mass.shaft_g}
 
 
 def peak_of(name: str, record: Mapping[str, Any]) -> StressPeak:

@@ -15,8 +15,8 @@ from pathlib import Path
 def own_scratch() -> Iterator[None]:
     """Put this process's temporary files into a folder of its own for as long as the context lasts.
 
-    The libraries' too. Where no temporary folder can be written to, nothing is changed: who needs one
-    will say so.
+    This includes files of libraries. If no temporary folder can be written to, nothing is changed: a later
+    write reports the error.
     """
     from flexspline.pipeline.temporary_files import discard, mark
     from flexspline.results.job import tell

@@ -21,28 +21,28 @@ ENDS = frozenset((signal.SIGINT, signal.SIGTERM))
 @contextmanager
 def answered_at_once() -> Iterator[None]:
     """One line on stderr where a command that is asked to end takes longer than a moment."""
-    heard, told = socket.socketpair()
-    told.setblocking(False)
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
     ended = threading.Event()
-    listener = threading.Thread(target=_listen, args=(heard, ended), daemon=True)
-    before = signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
+    listener = threading.Thread(target=_listen, args=(receiver, ended), daemon=True)
+    before = signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
     listener.start()
     try:
         yield
     finally:
         signal.set_wakeup_fd(before)
         ended.set()
-        told.close()
+        sender.close()
         listener.join()
-        heard.close()
+        receiver.close()
 
 
-def _listen(heard: socket.socket, ended: threading.Event) -> None:
-    while numbers := heard.recv(16):
+def _listen(receiver: socket.socket, ended: threading.Event) -> None:
+    while numbers := receiver.recv(16):
         if ENDS.isdisjoint(numbers):
             continue
         if not ended.wait(AT_ONCE_S):
-            with suppress(OSError):  # whoever listened has gone
+            with suppress(OSError):  # the reader has gone
                 print(
                     "flexspline: stopping after the current step",
                     file=sys.stderr,

@@ -44,8 +44,8 @@ def show(text: str, json: bool = False) -> None:
 
     Raises
     ------
-    SystemExit : whoever read it has gone.
-    OSError : it cannot be written; its `filename` says where to.
+    SystemExit : the reader has gone.
+    OSError : the answer cannot be written; `filename` names the stream.
     """
     text = readable(text)
     if json and codecs.lookup(sys.stdout.encoding).name != "utf-8":
@@ -119,7 +119,7 @@ def _flush(code: object) -> None:
             raise SystemExit(FAILED) from None
     try:
         sys.stderr.flush()
-    except OSError:  # whoever listened has gone; Python 3.13 would end with status 120
+    except OSError:  # the reader has gone; Python 3.13 would end with status 120
         _give_up(sys.stderr)
 
 

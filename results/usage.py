@@ -36,7 +36,7 @@ def answered_in_one_line() -> Iterator[None]:
     """Raises typer.Exit: 2 in place of an error of use, 1 where a help text cannot be written."""
     try:
         yield
-    except BrokenPipeError:  # whoever read it has gone
+    except BrokenPipeError:  # the reader has gone
         raise
     except OSError as error:
         from flexspline.geometry.errors import why_of

@@ -26,18 +26,18 @@ PEAK_KEYS = {
 
 
 def shortfalls(
-    design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
+    design: Design, stiffnesses: Stiffnesses, fields: Mapping[str, SolidField] | None = None
 ) -> tuple[str, ...]:
     """One line for each figure that passes a limit, whose bounds are wider than asked for, that is known to
     be off by more than they say, or that is missing, and why."""
-    peaks = _peaks(found, fields or {})
+    peaks = _peaks(stiffnesses, fields or {})
     return (
         *map(passed_line, limits_passed(design, peaks)),
-        *_wide(design, found),
-        *_beyond_bounds(design, found),
+        *_wide(design, stiffnesses),
+        *_beyond_bounds(design, stiffnesses),
         *_unsettled(peaks),
         *_left_out(peaks),
-        *_missing(found),
+        *_missing(stiffnesses),
     )
 
 
@@ -55,31 +55,31 @@ def solved_warnings(result: RunResult) -> tuple[str, ...]:
     )
 
 
-def _peaks(found: Stiffnesses, fields: Mapping[str, SolidField]) -> dict[str, StressPeak]:
+def _peaks(stiffnesses: Stiffnesses, fields: Mapping[str, SolidField]) -> dict[str, StressPeak]:
     """By their names in result.json."""
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
-    if found.wave_generator_peak is not None:
-        peaks["wave_generator_peak"] = found.wave_generator_peak
+    if stiffnesses.wave_generator_peak is not None:
+        peaks["wave_generator_peak"] = stiffnesses.wave_generator_peak
     return peaks
 
 
-def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
-    asked = design.solver.tolerance_pct
-    for name, stiffness in found.solved.items():
+def _wide(design: Design, stiffnesses: Stiffnesses) -> Iterator[str]:
+    tolerance_pct = design.solver.tolerance_pct
+    for name, stiffness in stiffnesses.solved.items():
         half = 100 * stiffness.half_width
-        if half > asked:
+        if half > tolerance_pct:
             symbol = quantity(f"{name}_Nm_per_rad").symbol
             yield (
-                f"{symbol} is known to ± {beyond(half, asked)} %, wider than the ± {asked:g} % asked for"
-                " (solver.tolerance_pct)"
+                f"{symbol} is known to ± {beyond(half, tolerance_pct)} %, wider than the requested "
+                f"± {tolerance_pct:g} % (solver.tolerance_pct)"
                 + (f": {stiffness.shortfall}" if stiffness.shortfall else "")
             )
 
 
-def _beyond_bounds(design: Design, found: Stiffnesses) -> tuple[str, ...]:
+def _beyond_bounds(design: Design, stiffnesses: Stiffnesses) -> tuple[str, ...]:
     from flexspline.pipeline.first_face import too_large_lines
 
-    return too_large_lines(design) if "K_e" in found.solved else ()
+    return too_large_lines(design) if "K_e" in stiffnesses.solved else ()
 
 
 def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
@@ -96,14 +96,14 @@ def _left_out(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
             yield f"{title}: the mesh leaves out {peak.left_out}, where the stress is higher"
 
 
-def _missing(found: Stiffnesses) -> Iterator[str]:
-    said = set()
-    for name, why in found.missing.items():
+def _missing(stiffnesses: Stiffnesses) -> Iterator[str]:
+    written = set()
+    for name, why in stiffnesses.missing.items():
         if name == "gear":
-            yield f"Whole gear: not found, {why}"
+            yield f"Whole gear: not computed, {why}"
             continue
         key = PEAK_KEYS.get(name, f"{name}_Nm_per_rad")
-        if key in said:  # a field and its peak fail together
+        if key in written:  # a field and its peak fail together
             continue
-        said.add(key)
-        yield f"{quantity(key).name}: not found, {why}"
+        written.add(key)
+        yield f"{quantity(key).name}: not computed, {why}"

@@ -28,7 +28,7 @@ from flexspline.results.diagnosis.words import title_of
 CONFIRMS = {
     YOUNGS_MODULUS: "a tensile or resonance test of the same bar gives E directly",
     SERIES: "clamp a solid dummy in the same fixture: any twist then comes from the fixture",
-    LOAD_ZONE: "specimens with another ring width, as the lobes' effect depends on it most",
+    LOAD_ZONE: "measure specimens with another ring width, on which the effect of the lobes depends most",
 }
 """What confirms a cause that specimens show."""
 
@@ -45,8 +45,8 @@ POSITIONS = (
 )
 FURTHER_CYCLES = f"run {MORE_CYCLES} further cycles at constant temperature"
 COMPARE = (
-    "compare the filters of the torque and the angle channel, and whether both are read at one instant; then "
-    f"repeat the sweep at {SLOWER} of the rate of torque: "
+    "compare the filters of the torque channel and the angle channel, and check that both are read at the "
+    f"same time; then repeat the sweep at {SLOWER} of the rate of torque: "
 )
 
 
@@ -76,9 +76,9 @@ SHOWS_STRUCTURE = {
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
     "record: the pause changes an effect of time, but not an effect of the number of cycles",
-    "cycle": "if the gear was clamped again between cycles, give each clamp a name in a column unit and "
-    f"diagnose again; else {FURTHER_CYCLES}, touching nothing",
-    "unit": "measure the units again in another order, each clamped again",
+    "cycle": "if the gear was clamped again between cycles, give each clamping a name in the column unit and "
+    f"diagnose again; otherwise {FURTHER_CYCLES} without touching the rig",
+    "unit": "measure the units again in another order, and clamp each one again",
 }
 """What shows structure in a channel, everything else held."""
 
@@ -96,19 +96,19 @@ DOING: Mapping[DoingKind, str] = {
     "between_positions": "repeat the sweep at wave generator angles half way between those measured, in "
     "mixed order",
     "more_cycles": f"{FURTHER_CYCLES} and repeat the sweep",
-    "slower": f"repeat the sweep at {SLOWER} of the rate of torque: the gap is then crossed nearer to the "
-    "friction's torque, and what drag adds is smaller",
+    "slower": f"repeat the sweep at {SLOWER} of the rate of torque: drag then adds less torque, and the gap "
+    "is crossed closer to the friction torque",
     "compare_channels": f"{COMPARE}the effect of a late reading is then {SLOWER} as large",
     "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then {SLOWER} as wide, that of "
     "a torque cell with hysteresis as wide as before",
-    "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
-    "both ways",
-    "read_torque_zero": "unload the torque cell before and after the record, and every few "
-    "cycles, and write down its reading",
-    "same_ends": f"the same end points {TIMES_OVER} times over",
-    "other_ends": "end points at ± {torques} N·m",
-    "closed_sweep": "a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",
-    "closed_sweeps": "closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = "
+    "weigh_torque_cell": "load and unload the torque cell with known weights, and compare its readings in "
+    "both directions",
+    "read_torque_zero": "unload the torque cell before the record, after it and every few cycles, and write "
+    "down its reading",
+    "same_ends": f"measure the same end points {TIMES_OVER} times",
+    "other_ends": "measure end points at ± {torques} N·m",
+    "closed_sweep": "measure a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",
+    "closed_sweeps": "measure closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading, at T = "
     "{torques} N·m",
     "temperatures_in_other_order": OTHER_ORDER,
     "check_scales": "compare the angle reading with a known angle, and the torque reading with known "
@@ -122,16 +122,16 @@ BEYOND: Collection[DoingKind] = ("larger_torque", "other_ends", "closed_sweeps")
 
 
 EXTENDS: Mapping[DoingKind, str] = {
-    "larger_torque": "to extend it to other torques",
-    "between_positions": "to test it at other positions, at any torque",
+    "larger_torque": "to extend this result to other torques",
+    "between_positions": "to test this result at other positions, at any torque",
 }
 """What confirms a cause that a record has shown."""
 
 
 def doing_words(doing: Doing) -> str:
     """What to do."""
-    said = DOING[doing.kind].format(torques=", ".join(f"{t:g}" for t in doing.torques_Nm))
-    return said + _rated(doing) if doing.kind in BEYOND else said
+    words = DOING[doing.kind].format(torques=", ".join(f"{t:g}" for t in doing.torques_Nm))
+    return words + _rated(doing) if doing.kind in BEYOND else words
 
 
 def _rated(doing: Doing) -> str:
@@ -140,15 +140,15 @@ def _rated(doing: Doing) -> str:
         return ", as far as the gear's rated torque allows (gear.rated_torque_Nm is not stated)"
     rated = f"the rated torque of {doing.rated_Nm:g} N·m"
     if max(doing.torques_Nm) > doing.rated_Nm:
-        return f" and no further: the record itself exceeds {rated}"
+        return f" and not beyond: the record already exceeds {rated}"
     return f", within {rated}"
 
 
-def why(after: NextMeasurement, kind: MeasurementKind, found: Iterable[NamedCause] = ()) -> str:
-    """What to measure next and why, of the kind of measurement that was diagnosed and the causes `found`."""
+def why(after: NextMeasurement, kind: MeasurementKind, causes: Iterable[NamedCause] = ()) -> str:
+    """What to measure next and why; `kind` of the diagnosed measurement, `causes` that were identified."""
     if after.aim == "more_data" and after.doing is not None:
         return doing_words(after.doing)
-    sizes = {c.id: c.magnitude for c in found}
+    sizes = {c.id: c.magnitude for c in causes}
     titles = [title_of(c, sizes.get(c, 0.0)) for c in after.causes]
     words = {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind]
     return words(after, titles)
@@ -159,7 +159,10 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
         if after.doing is not None:
             return doing_words(after.doing)
         where = f" ({words_of(after.structure, after.vary)})" if after.structure else ""
-        return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
+        how = SHOWS_STRUCTURE.get(
+            after.vary, "vary only this channel and keep everything else constant"
+        )
+        return f"the structure lies in {channel_words(after.vary)}{where}: {how}"
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
@@ -171,12 +174,8 @@ def _of_sweep(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.doing is None or not after.separation:  # nothing was computed
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
         return f"to distinguish {separated}: {doing}"
-    apart = f"their predictions then differ by {after.separation:.0f} times the noise"
-    return f"{doing_words(after.doing)}: {apart}; it distinguishes {separated}"
-
-
-def _alone(channel: str) -> str:
-    return SHOWS_STRUCTURE.get(channel, "vary it alone, everything else held")
+    difference = f"their predictions then differ by {after.separation:.0f} times the noise"
+    return f"to distinguish {separated}: {doing_words(after.doing)}; {difference}"
 
 
 def _of_end_points(after: NextMeasurement, titles: Sequence[str]) -> str:
@@ -184,41 +183,40 @@ def _of_end_points(after: NextMeasurement, titles: Sequence[str]) -> str:
         return "closed torque sweeps show the whole curve, not its ends"
     every = ", ".join(titles)
     reveals = known_causes()[after.causes[0]].reveals
-    here = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
+    action = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
     if after.aim != "separate":
-        return f"{here}; it would confirm or rule out {every}"
-    apart = (
-        "the two of them that are nearest to each other then differ by "
-        f"{after.separation:.0f} times the noise"
+        return f"{action}; this would confirm or rule out {every}"
+    difference = (
+        f"the two most similar of them then differ by {after.separation:.0f} times the noise"
     )
     if after.same_points is not None:
-        apart += f" (end points at the same torques: {after.same_points:.1f})"
-    return f"{here}; it distinguishes {every}: {apart}"
+        difference += f" (end points at the same torques: {after.same_points:.1f})"
+    return f"{action}; this distinguishes {every}: {difference}"
 
 
 def _of_specimens(after: NextMeasurement, titles: Sequence[str]) -> str:
     if after.aim == "find_structure":
         what = words_of(after.structure, after.vary) if after.structure else after.vary
-        return f"the structure is {what}: repeat those specimens, in another order"
+        return f"the structure is {what}: measure these specimens again, in another order"
     if after.aim == "confirm":
         test = CONFIRMS.get(after.causes[0])
-        return f"to confirm it: {test}" if test else f"measure {after.vary} of the specimens"
+        return (
+            f"to confirm this cause: {test}" if test else f"measure {after.vary} of the specimens"
+        )
     separated = _one_from_others(titles)
     if after.dimension_mm is None:
-        return f"another fixture, to distinguish {separated}"
+        return f"use another fixture, to distinguish {separated}"
     made, drawn = after.dimension_mm
-    apart = (
-        f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
-        f"to each other then differ by {after.separation:.1f} times the noise"
+    proposal = (
+        f"measure a specimen with {after.vary} = {made:g} instead of {drawn:g}: the two most similar "
+        f"predictions of its stiffness differ by {after.separation:.1f} times the noise"
     )
     if after.separation**2 >= 2 * RIVAL_EVIDENCE:
-        return f"{apart}; it distinguishes {separated}"
+        return f"{proposal}; this distinguishes {separated}"
     needed = 2 * RIVAL_EVIDENCE / max(after.separation, LEAST_SEPARATION) ** 2
     if needed > MOST_SPECIMENS:
-        return (
-            f"{apart}, too little to distinguish {separated}; no other dimension tried does better"
-        )
-    return f"{apart}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
+        return f"{proposal}, too little to distinguish {separated}; no other dimension is better"
+    return f"{proposal}; about {ceil(needed)} such specimens are needed to distinguish {separated}"
 
 
 def _one_from_others(titles: Sequence[str]) -> str:

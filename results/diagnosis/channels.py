@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.left_out import LeftOut
 
 @dataclass(frozen=True)
 class ChannelWords:
-    """A channel as a person says it.
+    """A channel in words.
 
     Attributes
     ----------
@@ -74,10 +74,11 @@ def left_out_words(left: LeftOut) -> str:
         ends = low if low == high else f"{low} to {high}"
         return f"{words.level} {ends} {words.unit}"
     if left.of_units:
-        each = (
-            f"{_counted(words, map(_plain, own))} of unit {unit}" for unit, own in left.of_units
+        by_unit = (
+            f"{_counted(words, map(_plain, values))} of unit {unit}"
+            for unit, values in left.of_units
         )
-        return listed(each, CHANNELS["unit"].many)
+        return listed(by_unit, CHANNELS["unit"].many)
     return _counted(words, left.names or map(_plain, left.values))
 
 

@@ -48,7 +48,7 @@ CountsPerTurn = Annotated[
 ]
 
 
-AGAIN = "; run the same command again: stiffnesses solved are kept, the diagnosis starts from the beginning"
+AGAIN = "; run the same command again: solved stiffnesses are kept, the diagnosis starts from the beginning"
 """To who stops the command."""
 TOML = ".toml"
 SUM, GEAR = "sum", "gear"
@@ -98,8 +98,8 @@ def diagnose(
         job = begin(design, out, of_diagnosis(CAPTIONS))
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
         with second_process():
-            said = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
-        show(said, json)
+            text = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
+        show(text, json)
 
 
 def predict(
@@ -120,5 +120,5 @@ def predict(
         from flexspline.results.output_folder import folder_of
 
         gear, folder = load_design(design), folder_of(design, out, (PREDICTION,))
-        said = predict_and_write(gear, model, torque, folder, json, counts_per_turn)
-        show(said, json)
+        text = predict_and_write(gear, model, torque, folder, json, counts_per_turn)
+        show(text, json)

@@ -38,8 +38,8 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     widths = [
         max(len(cell) for cell in column) + BETWEEN for column in list(zip(*cells, strict=True))[:2]
     ]
-    for cause, found in zip(outcome.causes, cells, strict=True):
-        lines += row(found, widths)
+    for cause, texts in zip(outcome.causes, cells, strict=True):
+        lines += row(texts, widths)
         if cause.alternatives:
             lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
@@ -72,18 +72,18 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
         held_out = left_out_words(gain.held_out)
         lines += row((f"Error on {held_out}, not used for fitting, in {gain.unit} rms:",))
         errors = {
-            "simulation as it stands": gain.rmse_before,
+            "simulation as designed": gain.rmse_before,
             calibrated_words(gain): gain.rmse_calibrated,
         }
         if outcome.causes:
-            errors["with the causes found"] = gain.rmse_after
+            errors["with the identified causes"] = gain.rmse_after
         if free := free_words(outcome):
             errors[free] = gain.rmse_after
         errors[noise_words(gain)] = gain.noise_floor
         for words, value in errors.items():
             lines += row((words, figures_text(value)), (60,), "    ")
     if outcome.gains_at_levels:
-        head = "Error where a whole level was left out, in arcsec rms, without and with the causes:"
+        head = "Error on a level that was left out of the fit, in arcsec rms, without and with the causes:"
         lines += row((head,))
     for level in outcome.gains_at_levels:
         before, after = figures_text(level.rmse_before), figures_text(level.rmse_after)

@@ -21,12 +21,13 @@ from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
-"""Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+"""Share of the simulated deviation: a record that leaves more adds at most about half of the information that
+the simulation has."""
 AS_SIMULATED_WITHIN = 0.5
 """Stated deviations from the simulated value, within which a value is said to be as simulated."""
 
-NOT_NARROWED = "this record does not narrow it"
-"""What is said of a value that a record leaves as open as the simulation."""
+NOT_NARROWED = "this record does not reduce the uncertainty"
+"""Remark on a value that the record determines no better than the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
 
@@ -104,25 +105,25 @@ def calibrated_sentences(
     )
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
-        found = calibration.compliance
-        if slope is not None and _is_held(found, prediction, slope):
-            compliance = _held(found, prediction, slope)
+        measured = calibration.compliance
+        if slope is not None and _is_held(measured, prediction, slope):
+            compliance = _held(measured, prediction, slope)
         else:
-            compliance = _against(found, prediction.compliance, prediction.compliance_std)
+            compliance = _against(measured, prediction.compliance, prediction.compliance_std)
         parts.append(f"compliance {compliance} arcsec per N·m")
     found_any = outcome.causes or outcome.unexplained
-    beside = ", without the effects found" if calibration.beside_effects and found_any else ""
-    said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
+    beside = ", without the other effects" if calibration.beside_effects and found_any else ""
+    text = f"Calibrated on this record{beside}: {'; '.join(parts)}."
     known = known_causes()
     elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
     if elastic and calibration.compliance is not None:
         titles = joined((title_of(c.id, c.magnitude) for c in elastic), "and")
-        said += f" The measured slope is this compliance and the effect of: {titles}."
+        text += f" The measured slope is the sum of this compliance and the effect of: {titles}."
     if calibration.gap_arcsec.value < 0:
-        said += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
+        text += " A gap cannot be negative: the model does not describe this record, or a reading is wrong."
     if outcome.unexplained:
-        said += " An effect is unexplained; it may have changed them by more than the stated ±."
-    return said
+        text += " An unexplained effect may have changed these values by more than the stated ±."
+    return text
 
 
 def own_slope(diagnosis: Diagnosis) -> SlopeRatio | None:
@@ -140,23 +141,23 @@ def _held(measured: Estimate, prediction: Prediction, slope: SlopeRatio) -> str:
     return (
         f"{plus_minus(measured.value, measured.std)} (held near the simulated "
         f"{plus_minus(prediction.compliance, prediction.compliance_std)}; the record itself is "
-        f"{slope_times(slope)}: a straight line through it has a slope of "
+        f"{slope_times(slope)}: a straight line through the record has a slope of "
         f"{slope.ratio * prediction.compliance:.3g}. The difference counts as an effect)"
     )
 
 
 def _against(measured: Estimate, simulated: float, std: float, as_open: str = NOT_NARROWED) -> str:
     """A value beside the simulated one; `as_open` is said where the record leaves it as open."""
-    found = plus_minus(measured.value, measured.std)
+    text = plus_minus(measured.value, measured.std)
     if not std:
-        return f"{found} (simulated {simulated:.4g})"
-    if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
+        return f"{text} (simulated {simulated:.4g})"
+    if measured.std > AS_SIMULATED * std:  # another effect may take its place
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
-            return f"{found} (as simulated: {as_open})"
+            return f"{text} (as simulated: {as_open})"
         if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
-            return f"{found} (simulated {plus_minus(simulated, std)}; {as_open})"
+            return f"{text} (simulated {plus_minus(simulated, std)}; {as_open})"
     off = signed((measured.value - simulated) / std, 1)
-    return f"{found} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
+    return f"{text} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"
 
 
 def rows_used(prepared: PreparedSweep) -> str:
@@ -180,16 +181,16 @@ def kinds_left_out(counts: RowCounts) -> list[tuple[str, int]]:
 def row_notes(prepared: PreparedSweep) -> list[str]:
     """Rows used, and rows left out by their reason."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
-    found = []
+    notes = []
     if averaging is not None:
         left = averaging.rows_read - averaging.rows_averaged
-        found.append(
+        notes.append(
             f"{grouped(averaging.rows_read, 0)} rows were read and averaged to "
             f"{grouped(counts.total, 0)} means of neighbouring rows; "
-            f"{grouped(left, 0)} rows (spikes, surplus cycles) are in no mean"
+            f"{grouped(left, 0)} rows (spikes, surplus cycles) were left out of the means"
         )
     what = "rows" if averaging is None else "means"
-    found.append(
+    notes.append(
         f"{rows_used(prepared)}{' rows' * (averaging is None)} were used for identification"
     )
     others = ", ".join(
@@ -203,20 +204,22 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
     )
     if counts.crossing:
         crossing = f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)}"
-        found.append(
+        notes.append(
             f"{crossing} (backlash crossing) were not used for identification"
-            + (f"; nor were {others}" if others else "")
+            + (f"; also not used: {others}" if others else "")
         )
     elif others:
-        found.append(f"{what} not used for identification: {others}")
-    return found
+        notes.append(f"{what} not used for identification: {others}")
+    return notes
 
 
 def _at_the_crossing(prepared: PreparedSweep) -> str:
     """Which rows those are: the teeth's torque counts, which is not what was read."""
     band = f"{prepared.band_Nm:.3g} N·m"
     if prepared.ahead is not None:
-        return f"where friction ahead of the teeth leaves them less than {band}"
+        return (
+            f"where the torque at the teeth is less than {band} because of friction ahead of them"
+        )
     if prepared.offset_Nm:
         return f"within {band} of the shifted zero of torque"
     return f"with |T| < {band}"

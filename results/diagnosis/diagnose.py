@@ -22,8 +22,8 @@ from flexspline.results.records import as_json
 class UnwrittenError(FlexsplineError, OSError):
     """A diagnosis that is known and could not be written: which file, why, and the verdict, on one line."""
 
-    def __init__(self, fault: OSError, found: Diagnosis, folder: Path) -> None:
-        verdict = f"{verdict_heading(found)} ({found.verdict}). {summary(found)}"
+    def __init__(self, fault: OSError, diagnosis: Diagnosis, folder: Path) -> None:
+        verdict = f"{verdict_heading(diagnosis)} ({diagnosis.verdict}). {summary(diagnosis)}"
         why = f"{fault.strerror or fault}; no file was written. The verdict: {verdict}"
         super().__init__(fault.errno, why, fault.filename or str(folder))
 
@@ -46,7 +46,7 @@ def diagnose_and_write(
     DesignError, ComputationError, MeasurementError
     UnwrittenError : the files could not be written, on a full disk; it says the verdict.
     """
-    found, used = diagnose_with_stiffness(
+    diagnosis, used = diagnose_with_stiffness(
         job.design,
         measured,
         GivenStiffness(given, ("--Kb ", "--Ke ")),
@@ -54,12 +54,12 @@ def diagnose_and_write(
         DiagnosisOptions(counts_per_turn, gear),
         job.progress,
     )
-    record = diagnosis_record(found)
+    record = diagnosis_record(diagnosis)
     with job.progress.stage("figures and report"):
         try:
-            note = write_diagnosis(job.folder, found, record, used, (job.file,))
+            note = write_diagnosis(job.folder, diagnosis, record, used, (job.file,))
         except OSError as fault:
-            raise UnwrittenError(fault, found, job.folder) from fault
+            raise UnwrittenError(fault, diagnosis, job.folder) from fault
     if note is not None:
         tell(f"note: {note}")
-    return as_json(record) if json else diagnosis_table(found, job.folder)
+    return as_json(record) if json else diagnosis_table(diagnosis, job.folder)

@@ -27,11 +27,11 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
             "uncertainty is its prior); the rest differs from unit to unit"
         )
     mids = analysis.mids
-    told = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
+    positions = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
     notes.append(
-        f"mid positions {told} arcsec: the symmetric model predicts 0, but each unit's angle zero is "
+        f"mid positions {positions} arcsec: the symmetric model predicts 0, but each unit's angle zero is "
         "unknown, so the mid positions cannot confirm or reject this; stiffness that differs with "
-        f"direction could move one by at most {mids.asymmetry_reach_arcsec:.1f} arcsec"
+        f"direction could move a mid position by at most {mids.asymmetry_reach_arcsec:.1f} arcsec"
         + ("" if analysis.several_torques else ", and only a second torque would show it")
     )
     return tuple(notes)
@@ -61,8 +61,8 @@ def _limit_note(u: UnitFinding, of: Envelope) -> str:
     if u.z < 0 or not isfinite(of.play_end_arcsec):
         return f"unit {u.unit}: {least}"
     limit = of.limit_arcsec()
-    side = "more" if u.total_arcsec > limit else "less"
+    side = "larger" if u.total_arcsec > limit else "smaller"
     return (
-        f"unit {u.unit}: {least}; with j_bn0 one standard deviation up and c at c_max, where the involute "
-        f"model saturates, the sum is {limit:.1f} arcsec: the unit shows {side}"
+        f"unit {u.unit}: {least}; with j_bn0 one standard deviation larger and c = c_max, where the involute "
+        f"model saturates, the sum is {limit:.1f} arcsec; the measured total is {side}"
     )

@@ -60,9 +60,7 @@ def write_diagnosis(
     if other is None:
         return None
     kept = f"; its model is kept as {PREVIOUS_MODEL}" if has_model else ""
-    return (
-        f"the earlier diagnosis of {other} in this folder was replaced{kept}; --out DIR keeps both"
-    )
+    return f"the earlier diagnosis of {other} in this folder was replaced{kept}; use --out DIR to keep both"
 
 
 def _other_measurement(folder: Path, measurement: dict[str, Any]) -> str | None:

@@ -9,93 +9,100 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.fitted_input import FittedInput
     from flexspline.pipeline.diagnosis.whole_gear.identification import GearIdentification
+    from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
     from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair
 
 
-def gear_inputs_record(found: GearIdentification) -> dict[str, Any]:
-    """As in docs/contract.md; what was not found is absent."""
+def gear_inputs_record(identification: GearIdentification) -> dict[str, Any]:
+    """The keys of docs/contract.md; a value that was not determined is absent."""
     record: dict[str, Any] = {
-        "outcome": found.outcome,
-        "remainder_arcsec": found.remainder_arcsec,
-        "chi_square": found.chi_square,
-        "places": found.places,
+        "outcome": identification.outcome,
+        "remainder_arcsec": identification.remainder_arcsec,
+        "chi_square": identification.chi_square,
+        "places": identification.places,
         "fitted": [
-            {
-                "key": one.key, "unit": one.unit, "nominal": one.nominal, "value": one.value,
-                "value_std": one.std, "chi_square": one.chi_square,
-            }
-            for one in found.fitted
+            {**_input_record(one, one.value, one.std), "chi_square": one.chi_square}
+            for one in identification.fitted
         ],
-    }  # fmt: skip
-    if found.outcome == "named":
-        record |= {"named": found.fitted[0].key, "rivals": list(found.rivals)}
-    if found.pairs:
+    }
+    if identification.outcome == "named":
+        record |= {"named": identification.fitted[0].key, "rivals": list(identification.rivals)}
+    if identification.pairs:
         record["pairs"] = [
             {
                 "inputs": [
-                    {
-                        "key": one.key,
-                        "unit": one.unit,
-                        "nominal": one.nominal,
-                        "value": value,
-                        "value_std": std,
-                    }
+                    _input_record(one, value, std)
                     for one, value, std in zip(pair.inputs, pair.values, pair.stds, strict=True)
                 ],
                 "chi_square": pair.chi_square,
             }
-            for pair in found.pairs
+            for pair in identification.pairs
         ]
-    if found.left_arcsec is not None:
-        record |= {"rmse_before": found.before_arcsec, "rmse_after": found.left_arcsec}
-    if found.apart is not None:
-        record["told_apart_at_Nm"] = found.apart.torque_Nm
-        record["told_apart_by_arcsec"] = found.apart.difference_arcsec
+    if identification.left_arcsec is not None:
+        record |= {
+            "rmse_before": identification.before_arcsec,
+            "rmse_after": identification.left_arcsec,
+        }
+    if identification.apart is not None:
+        record["told_apart_at_Nm"] = identification.apart.torque_Nm
+        record["told_apart_by_arcsec"] = identification.apart.difference_arcsec
     return record
 
 
-def gear_inputs_notes(found: GearIdentification) -> tuple[str, ...]:
+def _input_record(one: FittedInput | GearInput, value: float, std: float) -> dict[str, Any]:
+    return {
+        "key": one.key, "unit": one.unit, "nominal": one.nominal, "value": value, "value_std": std,
+    }  # fmt: skip
+
+
+def gear_inputs_notes(identification: GearIdentification) -> tuple[str, ...]:
     """One sentence a finding."""
-    if found.outcome == "consistent":
+    if identification.outcome == "consistent":
         return (
-            f"the gear's curve fits the middle of the loop: {found.remainder_arcsec:.2g} arcsec rms at "
-            f"{found.places} torques, no more than its readings scatter",
+            "the gear's curve fits the middle of the loop: the difference is "
+            f"{identification.remainder_arcsec:.2g} arcsec rms at {identification.places} torques, not more "
+            "than the scatter of the readings",
         )
-    if found.outcome == "unknown":
+    if identification.outcome == "unknown":
         return (
-            f"no single input and no pair of inputs of the gear explains the {found.remainder_arcsec:.3g} "
-            f"arcsec rms between its curve and the readings at {found.places} torques"
-            + "".join(_nearest(found)),
+            "no single input and no pair of inputs of the gear explains the difference of "
+            f"{identification.remainder_arcsec:.3g} arcsec rms between its curve and the readings at "
+            f"{identification.places} torques" + "".join(_nearest(identification)),
         )
-    if found.outcome == "pair":
-        first, *more = found.pairs
-        said = [
-            "no single input of the gear explains the difference from its curve; two together do: "
-            f"{_both(first)}{_gain(found)}"
+    if identification.outcome == "pair":
+        first, *more = identification.pairs
+        sentences = [
+            "no single input of the gear explains the difference from its curve; two inputs together do: "
+            f"{_both(first)}{_gain(identification)}"
         ]
         if more:
-            said.append(
-                f"other pairs fit as well: {'; or '.join(_both(pair) for pair in more)}; measure one "
+            sentences.append(
+                f"other pairs fit equally well: {'; or '.join(_both(pair) for pair in more)}; measure one "
                 "of these inputs directly"
             )
-        return tuple(said)
-    best = found.fitted[0]
-    said = [
+        return tuple(sentences)
+    best = identification.fitted[0]
+    sentences = [
         f"{_value(best)} explains the difference from the gear's curve, with all other inputs as drawn"
-        f"{_gain(found)}"
+        f"{_gain(identification)}"
     ]
-    if found.rivals:
-        others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
-        said.append(f"others fit as well as {best.key}: {others}; {_next(found)}")
-    return tuple(said)
+    if identification.rivals:
+        others = ", ".join(
+            _value(one) for one in identification.fitted if one.key in identification.rivals
+        )
+        sentences.append(
+            f"other inputs fit as well as {best.key}: {others}; {_next(identification)}"
+        )
+    return tuple(sentences)
 
 
-def _nearest(found: GearIdentification) -> Iterator[str]:
+def _nearest(identification: GearIdentification) -> Iterator[str]:
     """Of the inputs that move the curve, if any does."""
-    for best in found.fitted[:1]:
+    for best in identification.fitted[:1]:
         yield (
-            f"; the nearest is {best.key} = {best.value:.3g} {best.unit}: the curve still deviates from the "
-            f"readings by {_deviations_off(best, found.places):.2g} standard deviations (root mean square)"
+            f"; the best fit is {best.key} = {best.value:.3g} {best.unit}; with it the curve still deviates "
+            f"from the readings by {_deviations_off(best, identification.places):.2g} standard deviations "
+            "(root mean square)"
         )
 
 
@@ -118,22 +125,22 @@ def _value(one: FittedInput) -> str:
     )
 
 
-def _gain(found: GearIdentification) -> str:
-    if found.left_arcsec is None:
-        return f", {found.remainder_arcsec:.3g} arcsec rms"
+def _gain(identification: GearIdentification) -> str:
+    if identification.left_arcsec is None:
+        return f", {identification.remainder_arcsec:.3g} arcsec rms"
     return (
-        f": {found.before_arcsec:.3g} arcsec rms before, {found.left_arcsec:.2g} after, on cycles that were "
-        "not fitted"
+        f": {identification.before_arcsec:.3g} arcsec rms before, {identification.left_arcsec:.2g} after, on "
+        "cycles that were not fitted"
     )
 
 
-def _next(found: GearIdentification) -> str:
-    if found.apart is None:
+def _next(identification: GearIdentification) -> str:
+    if identification.apart is None:
         return (
-            "no torque up to twice the largest, and within the rated torque, distinguishes them, so measure "
-            "one of them directly"
+            "no torque up to twice the largest measured torque, and within the rated torque, distinguishes "
+            "them; measure one of these inputs directly"
         )
     return (
-        f"at {found.apart.torque_Nm:.3g} N·m they differ by {found.apart.difference_arcsec:.2g} arcsec, "
-        "so measure there"
+        f"at {identification.apart.torque_Nm:.3g} N·m they differ by "
+        f"{identification.apart.difference_arcsec:.2g} arcsec, so measure at this torque"
     )

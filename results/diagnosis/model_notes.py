@@ -21,11 +21,11 @@ def _of_another(file: ModelFile, design: Design) -> tuple[str, ...]:
     changed = changed_tables(design, origin.design_digests)
     if not changed and (origin.design_digests or origin.design == design.name):
         return ()
-    other = f", not of {one_line(design.name)}" if origin.design != design.name else ""
+    other = f", not for {one_line(design.name)}" if origin.design != design.name else ""
     tables = f" with other values in {', '.join(f'[{name}]' for name in changed)}" * bool(changed)
     K_b, K_e = origin.K_b_Nm_per_rad, origin.K_e_Nm_per_rad
     return (
-        f"the model is of {one_line(origin.design)}{other}{tables}; "
+        f"the model is for {one_line(origin.design)}{other}{tables}; "
         f"its angles are for K_b {K_b:.0f} and K_e {K_e:.0f} N·m/rad",
     )
 
@@ -34,7 +34,7 @@ def _left_open(file: ModelFile) -> tuple[str, ...]:
     if file.provenance.verdict == "unknown":
         return (
             "the model's verdict is unknown: its record has an effect that no known cause explains,"
-            " and the model leaves that out",
+            " and the model does not contain this effect",
         )
     if file.provenance.verdict != "ambiguous":
         return ()
@@ -44,7 +44,7 @@ def _left_open(file: ModelFile) -> tuple[str, ...]:
         if others
     )
     return (
-        "the model's verdict is ambiguous: its record cannot tell its causes from others"
+        "the model's verdict is ambiguous: its record does not distinguish its causes from others"
         + (f" ({rivals})" if rivals else "")
         + "; under other conditions the angles may differ",
     )
@@ -53,4 +53,4 @@ def _left_open(file: ModelFile) -> tuple[str, ...]:
 def _without_time(file: ModelFile) -> tuple[str, ...]:
     if file.provenance.time_recorded or RATE not in file.model.elements:
         return ()
-    return (f"the model's record had no time: its {title_of(RATE)} counts a row as a second",)
+    return (f"the model's record has no time: its {title_of(RATE)} takes one row as one second",)

@@ -43,8 +43,8 @@ LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 NOTHING_SHARE = 0.01
 """Of the simulated bend: a record that has less of it has none."""
 NOT_SOUGHT = (
-    "the gear's inputs were not searched for the cause of the difference: this needs one unit, loaded and "
-    "unloaded at both signs of torque, at three torques at least"
+    "no input of the gear was fitted to the difference: this needs one unit that was loaded and unloaded in "
+    "both directions, at three torques or more"
 )
 
 
@@ -55,9 +55,9 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         "compared with the simulated curve of the whole gear, which deviates from its chord by up to "
         f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction, diagnosis.causes),
     )  # fmt: skip
-    found = diagnosis.gear_inputs
-    if found is not None:
-        inputs = gear_inputs_notes(found)
+    gear_inputs = diagnosis.gear_inputs
+    if gear_inputs is not None:
+        inputs = gear_inputs_notes(gear_inputs)
     elif bend is not None and diagnosis.sweep is not None:
         inputs = (NOT_SOUGHT,)
     else:
@@ -84,10 +84,10 @@ def _scaled(prediction: Prediction, causes: Iterable[NamedCause]) -> str:
             f"; in this record by up to {most:.3g} arcsec, scaled by the same factor as its slope"
         )
     part = "nothing" if most < NOTHING_SHARE * whole else f"up to {most:.3g} arcsec"
-    said = f"; of this bend {part} is in this record"
+    text = f"; this record contains {part} of this deviation"
     if HARDENING in (c.id for c in causes):
-        said += f". Other curvature is counted as {title_of(HARDENING)}"
-    return said
+        text += f". Other curvature is counted as {title_of(HARDENING)}"
+    return text
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
@@ -104,7 +104,7 @@ def _held_rows(count: int) -> list[str]:
     if not count:
         return []
     return [
-        f"the angle is read more slowly than rows are written: {count} rows that repeat the previous "
+        f"the angle is read more slowly than rows are recorded: {count} rows that repeat the previous "
         "angle are left out, because the torque has changed since that reading"
     ]
 
@@ -120,21 +120,21 @@ def _ratios(causes: Iterable[NamedCause]) -> list[str]:
 
 def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> list[str]:
     """Of what grows at another rate later, that its size is the mean over the record."""
-    found = []
+    lines = []
     for c in causes:
         shapes = [e.shape for e in model.elements.get(c.id, ())] if model else []
         if c.id not in (WEAR, DRIFT):
             continue
         if any(s.get("run_in_cycles", 0.0) > 0 or s.get("settling_s", 0.0) > 0 for s in shapes):
-            how = "it levels off"
+            how = "the growth levels off"
         elif any(s["exponent"] < 1 for s in shapes):
-            how = "it slows down"
+            how = "the growth slows down"
         elif any(s["exponent"] > 1 for s in shapes):
-            how = "it quickens"
+            how = "the growth accelerates"
         else:
             continue
-        found.append(f"size of {title_of(c.id)}: mean over the record; {how}")
-    return found
+        lines.append(f"size of {title_of(c.id)}: mean over the record; {how}")
+    return lines
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -159,34 +159,35 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def record_notes(sweep: Sweep) -> list[str]:
     """Channels of the file that stand still, and rows that it has twice."""
-    found = []
+    remarks = []
     if sweep.history.time_s is None and sweep.read_as.column("time_s") is not None:
-        found.append("time is the same in all rows: taken as not recorded")
+        remarks.append("time is the same in all rows: taken as not recorded")
     if lines := constant_lines(sweep):
-        found.append(
-            f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: did the "
-            "channels drop out? Those rows count as measured; remove them if so"
+        remarks.append(
+            f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: if the channels "
+            "dropped out, remove these rows; they are used as measured"
         )
     if copies := copied_rows(sweep):
-        found.append(
-            f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured again, which makes the standard deviations too small"
+        remarks.append(
+            f"the last {grouped(copies, 0)} rows repeat earlier rows to the last digit: if the file was "
+            "appended to itself, remove these rows; they are used as new measurements, which makes the "
+            "standard deviations too small"
         )
-    return found
+    return remarks
 
 
 def _sweep_notes(explained: ExplainedSweep, causes: Sequence[NamedCause]) -> list[str]:
     prepared = explained.prepared
-    found = row_notes(prepared)
-    found += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
-    found += _rounding_notes(explained)
-    found += _noise_notes(explained)
-    found += _cancelling_notes(explained)
-    found += lag_notes(explained.identified)
-    found += drift_notes(causes)
+    lines = row_notes(prepared)
+    lines += unseen_notes(prepared.sweep.history, prepared.band_Nm, causes)
+    lines += _rounding_notes(explained)
+    lines += _noise_notes(explained)
+    lines += _cancelling_notes(explained)
+    lines += lag_notes(explained.identified)
+    lines += drift_notes(causes)
     if prepared.sweep.read_as.ignored:
-        found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
-    return found
+        lines.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
+    return lines
 
 
 def _noise_notes(explained: ExplainedSweep) -> list[str]:
@@ -196,8 +197,8 @@ def _noise_notes(explained: ExplainedSweep) -> list[str]:
         return []
     return [
         f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
-        f"some {1 / (1 - noise.memory):.0f} rows; an effect without a form in torque, time or position "
-        "would look the same"
+        f"about {1 / (1 - noise.memory):.0f} rows; an effect that follows neither torque nor time nor "
+        "position would look the same"
     ]
 
 
@@ -207,36 +208,36 @@ def _cancelling_notes(explained: ExplainedSweep) -> list[str]:
     if not terms_cancel(identified):
         return []
     return [
-        "the effects without a name cancel in part: together they are "
-        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; their forms and single sizes are not to be "
-        "relied on, and compliance and gap are calibrated without them"
+        "the unnamed effects cancel each other in part: their sum is "
+        f"{figures_text(identified.unnamed_rms(()))} arcsec rms; do not rely on the form and size of a "
+        "single one; compliance and gap are calibrated without them"
     ]
 
 
 def _rounding_notes(explained: ExplainedSweep) -> list[str]:
     """That a reading is coarse, where its rounding is more than the noise."""
-    found = []
+    lines = []
     angle = rounding_of_angle(explained.prepared, explained.identified.fit)
     if angle.is_seen:
-        found.append(
+        lines.append(
             f"the angle is read in steps of {angle.step:.3g} arcsec: the rounding error, "
             f"{angle.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the angle; "
             "more noise, or a finer encoder, would reduce it"
         )
     torque = rounding_of_torque(explained.prepared, explained.identified.fit)
     if torque.is_seen:
-        found.append(
+        lines.append(
             f"the torque is read in steps of {torque.step:.3g} N·m: the rounding error, "
             f"{torque.left_arcsec:.2g} arcsec rms, cannot be distinguished from an effect of the torque"
         )
-    return found
+    return lines
 
 
 def _scale_notes(
     causes: Iterable[NamedCause], calibration: Calibration | None, prediction: Prediction
 ) -> list[str]:
     """What looks like an elastic part: of an angle's wrong scale, that the gap has its factor too."""
-    found = []
+    lines = []
     for c in causes:
         if c.id != SERIES or calibration is None:
             continue
@@ -244,16 +245,16 @@ def _scale_notes(
         if c.or_scale == "angle":
             gap = calibration.gap_arcsec.value / prediction.gap_arcsec
             slope = 1 + c.magnitude / 100
-            found.append(
+            lines.append(
                 f"{title}: the gap is {gap:.3g} times and the compliance {slope:.3g} times the simulated "
                 "one, as if the angle were read with a wrong scale"
             )
         else:
             material = "softer" if c.magnitude > 0 else "stiffer"
-            found.append(
+            lines.append(
                 f"{title}: a wrong scale of the torque reading or a {material} material looks the same"
             )
-    return found
+    return lines
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
@@ -270,29 +271,33 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
     chosen = analysis.chosen
     noise = f"the noise of one stiffness is taken as {100 * float(chosen.noise.mean()):.2g} %"
     if analysis.race.data.std is None:
-        noise += ", from the scatter, as the file states none"
-    found = [noise]
+        noise += ", estimated from the scatter, because the file states none"
+    lines = [noise]
     if analysis.part_guessed_by is not None:
         part = analysis.part[0]
-        found.insert(
+        lines.insert(
             0,
-            f"the file has no column part: taken as {part}, by {GUESSED_BY[analysis.part_guessed_by]}",
+            f"the file has no column part: the part is taken as {part} because of "
+            f"{GUESSED_BY[analysis.part_guessed_by]}",
         )
     if YOUNGS_MODULUS not in chosen.causes:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
-        found.append(f"Young's modulus calibrated by {change} % within its uncertainty")
+        lines.append(f"Young's modulus calibrated by {change} % within its uncertainty")
     for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
         s = term.sensitivity
         if s is not None and term.owner not in chosen.causes:
             change = f"{value:+.2g}".replace("-", "−")
-            found.append(
-                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm of "
-                "ISO 2768-m and not a finding"
+            lines.append(
+                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm (ISO "
+                "2768-m) and therefore not a finding"
             )
     how = (
-        "solved with their holes"
+        "solved with its holes"
         if analysis.with_holes
-        else "the given stiffness times the hole-free model's ratio"
+        else "the given stiffness times a ratio of the model without holes"
     )
-    found.append(f"rows are {how}; changes with a dimension come from the hole-free model")
-    return found
+    lines.append(
+        f"the simulated stiffness of each specimen is {how}; sensitivities to dimensions come from the model "
+        "without holes"
+    )
+    return lines

@@ -39,7 +39,7 @@ def position_notes(explained: ExplainedSweep, unexplained: Sequence[Unexplained]
     angles = joined((f"{p:.4g}°" for p in places[out]), "and")
     largest = joined((f"{s:.2g}" for s in sizes[out]), "and")
     return [
-        f"the residual stands out at the wave generator's angle of {angles}: {largest} arcsec rms, elsewhere "
-        f"{np.median(sizes):.2g}. Each cycle has one angle, so the effect may be one of the angle (a damaged "
-        "tooth or ball) and not of the cycle: repeat these angles in another order"
+        f"the residual is large at the wave generator's angle of {angles}: {largest} arcsec rms, elsewhere "
+        f"{np.median(sizes):.2g}. Each cycle has its own angle, so the effect may come from the angle (a "
+        "damaged tooth or ball) and not from the cycle: measure these angles again in another order"
     ]

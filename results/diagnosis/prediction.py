@@ -44,8 +44,8 @@ def predict_and_write(
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
         tell(
-            "note: no standard deviations, and rows beyond the torques of the model's record are not "
-            "counted: only a model of a torque sweep contains both"
+            "note: no standard deviations are given, and rows beyond the measured torques are not counted: "
+            "only a model from a torque sweep contains these data"
         )
     angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
     added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})
@@ -55,8 +55,8 @@ def predict_and_write(
         record = {"angle_arcsec": angle.tolist()}
         return as_json(record | ({"angle_std_arcsec": std.tolist()} if std is not None else {}))
     off = "" if std is None else f", ± {std.min():.3g} to {std.max():.3g} (one standard deviation)"
-    said = f"{len(angle)} row{'s' * (len(angle) != 1)}, {angle.min():.6g} to {angle.max():.6g} arcsec{off}"
-    return f"{said}\n{folder / PREDICTION}"
+    summary = f"{len(angle)} row{'s' * (len(angle) != 1)}, {angle.min():.6g} to {angle.max():.6g} arcsec{off}"
+    return f"{summary}\n{folder / PREDICTION}"
 
 
 def with_columns(

@@ -23,8 +23,11 @@ SPANS = {
 def prediction_warnings(predicted: Predicted) -> Iterator[str]:
     """One line each."""
     if new := predicted.new_units:
-        told = f"unit {listed(new, 'units')}" if any(new) else "a file without units"
-        yield f"{told}: not a unit of the model, so its zero is taken as 0, and its own effects are not known"
+        units = f"unit {listed(new, 'units')}" if any(new) else "a file without units"
+        yield (
+            f"{units}: not in the model, so its zero offset is taken as 0, and effects of this unit alone "
+            "are not known"
+        )
     yield from map(beyond_words, predicted.beyond)
 
 
@@ -36,29 +39,29 @@ def beyond_words(rows: RowsBeyond) -> str:
 def _outside(rows: RowsBeyond) -> str:
     rate = PER_SECOND if rows.timed else PER_ROW
     if rows.channel == "torque_amplitude":
-        here, there = (f"{_limit(s):.4g} N·m" for s in (rows.here, rows.there))
+        in_file, in_record = (f"{_limit(s):.4g} N·m" for s in (rows.here, rows.there))
         return (
-            f"are in cycles smaller than the smallest measured: the smallest of this file reaches {here}, "
-            f"that of the model's record {there}; the friction of small loops is less certain"
+            f"are in cycles smaller than measured: the smallest cycle reaches {in_file} in this file and "
+            f"{in_record} in the model's record; the friction of small loops is less certain"
         )
     if rows.channel == "torque_rate":
-        here, there = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
+        in_file, in_record = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
         return (
-            f"are faster than measured: torque in this file moves by {here}, in the model's record by "
-            f"{there}; {LESS_CERTAIN}"
+            f"are faster than measured: torque in this file moves by {in_file}, in the model's record by "
+            f"{in_record}; {LESS_CERTAIN}"
         )
     if rows.channel == "slow_torque_rate":
-        here, there = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
+        in_file, in_record = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
         return (
-            f"are slower than measured: torque in this file moves by as little as {here}, in the model's "
-            f"record by {there} or more; the model's rate dependence is less certain there"
+            f"are slower than measured: torque in this file moves by as little as {in_file}, in the model's "
+            f"record by {in_record} or more; the model's rate dependence is less certain there"
         )
     words, unit = SPANS[rows.channel]
-    here, there = (
+    in_file, in_record = (
         f"{low:.4g} to {high:.4g}{unit}" for low, high in map(_ends, (rows.here, rows.there))
     )
     return (
-        f"are beyond the measured {words}: this file spans {here}, the model's record {there}; "
+        f"are beyond the measured {words}: this file spans {in_file}, the model's record {in_record}; "
         f"{LESS_CERTAIN}"
     )
 

@@ -54,16 +54,16 @@ def reading_notes(read_as: ReadAs) -> list[str]:
     columns = "; ".join(
         f'"{one_line(c.head, HEAD_LETTERS)}" as {_words(c, read_as)}' for c in read_as.columns
     )
-    found = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
+    notes = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
     if read_as.empty:
-        found.append(f"columns empty in every row: {heads(read_as.empty)}")
+        notes.append(f"columns empty in every row: {heads(read_as.empty)}")
     if read_as.heads_again:
         lines = listed(read_as.heads_again, "lines")
-        found.append(f"skipped, header again or data types: line {lines}")
+        notes.append(f"skipped, repeated header or data types: line {lines}")
     if read_as.footer:
         lines = listed(read_as.footer, "lines")
-        found.append(f"skipped, text below the last row: line {lines}")
-    return found
+        notes.append(f"skipped, text below the last row: line {lines}")
+    return notes
 
 
 def wrong_notes(readings: Iterable[WrongReadings]) -> list[str]:
@@ -90,7 +90,7 @@ def _wrong_words(wrong: WrongReadings) -> str:
     after = (
         f"the row{s} {'are' if s else 'is'} left out"
         if wrong.rows_left_out
-        else "a straight line between the readings before and after is taken instead"
+        else "it is replaced by a straight line between the readings before and after"
     )
     return f"{what} in {where}, far from all other readings, is taken as a fault of the sensor: {after}"
 

@@ -61,17 +61,17 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
     return record
 
 
-def _by_unit(apart: UnitsApart) -> Record:
+def _by_unit(separate: UnitsApart) -> Record:
     """Verdict and causes of each unit that was diagnosed by itself, and the one that the rest is of."""
     units = [
         {
             "unit": name,
-            "verdict": "insufficient" if own is None else own.verdict,
-            "causes": [_cause(c) for c in own.causes] if own else [],
+            "verdict": "insufficient" if decision is None else decision.verdict,
+            "causes": [_cause(c) for c in decision.causes] if decision else [],
         }
-        for name, own in apart.decisions.items()
+        for name, decision in separate.decisions.items()
     ]
-    return {"unit_shown": apart.unit, "by_unit": units}
+    return {"unit_shown": separate.unit, "by_unit": units}
 
 
 def _cause(cause: NamedCause) -> Record:

@@ -29,16 +29,16 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
         )
     if hint.interchanged:
         return (
-            f" The slope is {times} than simulated; with torque and angle interchanged it would be near:"
-            " check the columns."
+            f" The slope is {times} than simulated; with torque and angle interchanged it would be close to"
+            " the simulated one: check the columns."
         )
     if hint.units:
         units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
         return f" The slope is {times} than simulated, as with {units}: check the units."
     if hint.whole_gear:
         return (
-            f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
-            " whose teeth and bearing are elastic too? Then use --against gear."
+            f" The slope is {times} than flexspline and shaft in series. If a complete gear was measured, its"
+            " teeth and bearing are elastic too: use --against gear."
         )
     return f" The slope is {times} than simulated: check the units, and that the record is of this design."
 

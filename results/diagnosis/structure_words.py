@@ -34,13 +34,16 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("smooth", "time_s"): "a smooth function of time",
     ("smooth", "row"): "a smooth function along the record",
     ("even_curve", "torque_Nm"): "a curve of torque, equal for both signs",
-    ("bump", "torque_Nm"): "a bump of the curve",
-    ("curve_step", "torque_Nm"): "a step of the curve",
+    ("bump", "torque_Nm"): "a bump in the curve",
+    ("curve_step", "torque_Nm"): "a step in the curve",
     ("ripple", "torque_Nm"): "a ripple over torque",
     ("ripple", "angle_arcsec"): "a ripple over the output angle",
     ("softening", "torque_Nm"): "stiffness that falls with load",
-    ("one_sided", "torque_Nm"): "a bend of the curve at torque of one sign alone",
-    ("less_bend", "torque_Nm"): "a curve that bends less over torque than the gear's simulated one",
+    ("one_sided", "torque_Nm"): "a bend of the curve only at torque of one sign",
+    (
+        "less_bend",
+        "torque_Nm",
+    ): "a curve that bends less over torque than the simulated curve of the gear",
     ("uneven_loop", "direction"): "a loop that differs between the two sides",
     ("leading", "direction"): "output leads torque",
     ("gives_way", "torque_amplitude"): "a lock or clamp that slips under torque",
@@ -53,10 +56,10 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("own_zero", "input_angle_deg"): "a separate zero offset at each position",
     ("own_stiffness", "cycle"): "a separate stiffness in each cycle",
     ("own_stiffness", "input_angle_deg"): "a separate stiffness at each position",
-    ("own_stiffness", "unit"): "a gain",
+    ("own_stiffness", "unit"): "a separate gain",
     ("own_gap", "cycle"): "a separate gap in each cycle",
     ("own_gap", "input_angle_deg"): "a separate gap at each position",
-    ("own_gap", "unit"): "a gap",
+    ("own_gap", "unit"): "a separate gap",
     ("changing_zero", "temperature_C"): "a zero offset that changes with temperature",
     (
         "changing_zero",
@@ -88,9 +91,9 @@ ANYWHERE: Mapping[FormKind, str] = {
 }
 """Words that are the same for every channel."""
 LATE = (
-    "and so does the step of the gap; a lag of the twist does not delay this step. Drag ahead of the teeth "
-    "that grows with the speed, for example from stiff grease, would look the same, and at one rate so would "
-    "a second play behind friction, such as a loose key"
+    "including the step of the gap; a lag of the twist does not delay this step. Drag ahead of the teeth "
+    "that grows with the speed, for example from stiff grease, would look the same. If all cycles have one "
+    "rate, a second play behind friction, such as a loose key, would also look the same"
 )
 LATE_ANGLE = {
     FILTER: "it looks as if the angle reading follows the torque through a filter of {0:.2g} ± {1:.1g} s, "
@@ -129,7 +132,7 @@ def words_of(structure: Structure, channel: str) -> str:
             return slope_words(structure)
         case NegativeGap():
             gap = f"{structure.gap_arcsec:.3g} ± {structure.std_arcsec:.2g} arcsec"
-            return f"the best explanation needs a gap of {gap}, which no gear has"
+            return f"the best explanation needs a gap of {gap}, which is impossible"
         case MissedLevel():
             return (
                 f"the causes found do not predict {left_out_words(structure.held_out)}: fitted to the other "
@@ -143,9 +146,10 @@ def words_of(structure: Structure, channel: str) -> str:
         case DraggedCrossing():
             friction = f"{structure.friction_Nm:.3g} ± {structure.std_Nm:.1g} N·m"
             return (
-                f"the gap is crossed against friction of {friction}, and the later the quicker the torque: "
-                "drag ahead of the teeth that grows with the speed, for example from stiff grease. It looks "
-                "like more friction, hardening, a lag or another gap, so none of them is named"
+                f"the gap is crossed against friction of {friction}, and later when the torque changes "
+                "faster: drag ahead of the teeth grows with the speed, for example because of stiff grease. "
+                "Such drag looks like more friction, hardening, a lag or another gap, so none of these is "
+                "named"
             )
         case _:
             assert_never(structure)
@@ -158,48 +162,46 @@ def _form(form: UnnamedForm, channel: str) -> str:
         return f"a {form.kind} over {channel}"  # a dimension
     if form.kind == "one_sided" and form.at_Nm is not None:
         return _one_sided(form.at_Nm, form.more_arcsec)
-    said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
+    words = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
     if form.at_Nm is not None:
         place = signed(form.at_Nm, decimals_for(abs(form.at_Nm), 2)) if form.at_Nm else "0"
-        return f"{said} near {place} N·m"
+        return f"{words} near {place} N·m"
     if not form.number:
-        return said
-    return f"{said} of unit {form.name or form.number}" + "'s own" * (channel == "unit")
+        return words
+    return f"{words} of unit {form.name or form.number}"
 
 
 def _one_sided(at_Nm: float, more_arcsec: float | None) -> str:
     """On which side, from which torque on, and how much it is at the largest torque."""
     side = "positive" if copysign(1.0, at_Nm) > 0 else "negative"
-    said = FORMS["one_sided", "torque_Nm"].replace("torque of one sign", f"{side} torque")
+    words = FORMS["one_sided", "torque_Nm"].replace("torque of one sign", f"{side} torque")
     if at_Nm:
-        said += f", from {signed(at_Nm, decimals_for(abs(at_Nm), 2))} N·m on"
+        words += f", from {signed(at_Nm, decimals_for(abs(at_Nm), 2))} N·m on"
     if more_arcsec is None:
-        return said
+        return words
     more = "more" if more_arcsec > 0 else "less"
-    return f"{said}: {abs(more_arcsec):.2g} arcsec {more} twist at the largest torque"
+    return f"{words}: {abs(more_arcsec):.2g} arcsec {more} twist at the largest torque"
 
 
 def _backward(loop: BackwardLoop) -> str:
     which = "the loops run" if loop.rate_Nm_per_s is None else (
         f"the quickest loops, at {loop.rate_Nm_per_s:.3g} N·m/s, run"
     )  # fmt: skip
-    said = (
+    words = (
         f"{which} backwards: in the mean of {loop.loops} the angle is {loop.width_arcsec:.3g} arcsec lower "
-        "while torque falls than while it rises, so that the loop would release energy, which a passive gear "
-        f"cannot; most likely {_likely(loop)}"
+        "while torque falls than while it rises. Such a loop would release energy, which a passive gear "
+        f"cannot do; most likely {_likely(loop)}"
     )
     others = joined((UNRECORDED[channel] for channel in loop.unrecorded), "and")
-    return f"{said}. Other possible causes, not recorded: {others}" if others else said
+    return f"{words}. Other possible causes, not recorded: {others}" if others else words
 
 
 def _likely(loop: BackwardLoop) -> str:
     if loop.grows is False:
-        return "the torque cell has a hysteresis of its own, as the loops do not grow with the rate"
+        return "the torque cell itself has hysteresis, because the loops do not grow with the rate"
     late = "by a filter or a delay"
     if loop.delay_s is not None:
         delay, std = loop.delay_s
         late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
-    late = (
-        f"the torque reading lags the angle reading, {late}, or the two are not read at one instant"
-    )
-    return late if loop.grows else f"{late}, or the torque cell has a hysteresis of its own"
+    late = f"the torque reading lags the angle reading, {late}, or the two are not read at the same time"
+    return late if loop.grows else f"{late}, or the torque cell itself has hysteresis"

@@ -52,10 +52,10 @@ def summary(diagnosis: Diagnosis) -> str:
     """
     far = _far_off(diagnosis)
     if far and diagnosis.verdict == "consistent":
-        said = f"The curve has the simulated form, but the {far}."
+        text = f"The curve has the simulated form, but the {far}."
     else:
-        said = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
-    return said + slope_hint_words(diagnosis)
+        text = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
+    return text + slope_hint_words(diagnosis)
 
 
 def _far_off(diagnosis: Diagnosis) -> str:
@@ -78,8 +78,8 @@ def _far_off(diagnosis: Diagnosis) -> str:
 def _how_far(off: FarOff) -> str:
     value = plus_minus(off.measured.value, off.measured.std)
     return (
-        f"{value} {FAR_UNITS[off.quantity]}, lies {off.deviations:.1f} of its stated deviations from the "
-        "simulated one"
+        f"{value} {FAR_UNITS[off.quantity]}, differs by {off.deviations:.1f} stated standard deviations from "
+        "the simulated value"
     )
 
 
@@ -87,7 +87,7 @@ def _within(diagnosis: Diagnosis) -> str:
     """What contains all that was calibrated of a consistent record, where it is not `_far_off`."""
     calibration = diagnosis.calibration
     if calibration and calibration.far_off(diagnosis.prediction, UNUSUAL_DEVIATIONS):
-        return f"{FAR_DEVIATIONS:g} of its stated deviations"
+        return f"{FAR_DEVIATIONS:g} stated standard deviations"
     return "its stated uncertainty"
 
 
@@ -96,32 +96,28 @@ def _verdict(diagnosis: Diagnosis) -> str:
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:
         case "insufficient":
-            return f"Too little data to say anything: {_too_little(outcome)}."
+            reason = "" if outcome.too_little is None else shortage_words(outcome.too_little)
+            return f"The data are not sufficient: {reason}."
         case "consistent":
             noise = "" if points else " and the noise"
             return (
                 f"{AGREES[diagnosis.kind]} with the simulation within {_within(diagnosis)}{noise}."
             )
         case "named" if specimens:
-            return f"The simulation is wrong in one thing or more: {_listed(outcome.causes)}."
+            return f"The simulation is wrong in at least one point: {_listed(outcome.causes)}."
         case "named":
             return f"{left_out(outcome.causes)}{_left_over(outcome)}"
         case "ambiguous" if points is not None:
             return _ambiguous_end_points(outcome, points)
         case "ambiguous":
-            what = "missing from the simulation, and these data"
-            what = "wrong, and these specimens" if specimens else what
-            open_ = f"Something is {what} cannot tell what: {_rivals(outcome.causes)}."
+            what = "leaves an effect out, and these data do"
+            what = "is wrong in at least one point, and these specimens do" if specimens else what
+            open_ = f"The simulation {what} not show which: {_rivals(outcome.causes)}."
             return f"{open_}{_beside(outcome.causes)}{_left_over(outcome)}"
         case _ if points is not None:
             return "The totals depend on torque in a way that no known cause explains."
         case _:
             return _unknown(outcome, specimens)
-
-
-def _too_little(outcome: DiagnosisOutcome) -> str:
-    """Why there are too few data; "" where there are enough."""
-    return "" if outcome.too_little is None else shortage_words(outcome.too_little)
 
 
 def _left_over(outcome: DiagnosisOutcome) -> str:
@@ -133,9 +129,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
         return ""
     channel = channel_words(most.channel)
     rms = f"{most.rms:.2g} {most.unit} rms"
-    return (
-        f" No known cause explains what is left over the {channel}: {structure_words(most)}, {rms}."
-    )
+    return f" No known cause explains the remaining structure ({channel}): {structure_words(most)}, {rms}."
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:
@@ -150,38 +144,38 @@ def left_out(causes: Sequence[NamedCause]) -> str:
 def _listed(causes: Sequence[NamedCause]) -> str:
     """Each with its size; a cause that units have in different sizes is there more than once."""
     ids = [c.id for c in causes]
-    return "; ".join(_said(c, "only " * (ids.count(c.id) == 1)) for c in causes)
+    return "; ".join(_with_magnitude(c, "only " * (ids.count(c.id) == 1)) for c in causes)
 
 
-def _said(cause: NamedCause, only: str) -> str:
+def _with_magnitude(cause: NamedCause, only: str) -> str:
     where = f" ({only}{listed(cause.own_units, 'units')})" if cause.own_units else ""
     return f"{cause_title(cause)}, {magnitude_words(cause)}{where}"
 
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
-    told = []
+    clauses = []
     for place, c in enumerate(causes):
-        said = {e.id for e in causes[:place] if c.id in e.alternatives}
-        others = [other for other in c.alternatives if other not in said]
+        named = {e.id for e in causes[:place] if c.id in e.alternatives}
+        others = [other for other in c.alternatives if other not in named]
         if others:
             whom = joined(map(title_of, others), "or")
-            told.append(f"{cause_title(c)} cannot be distinguished from {whom}")
-    told += [
+            clauses.append(f"{cause_title(c)} cannot be distinguished from {whom}")
+    clauses += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
         if not is_significant(c) and not c.alternatives
     ]
-    return "; ".join(told)
+    return "; ".join(clauses)
 
 
 def _beside(causes: Sequence[NamedCause]) -> str:
     """Causes without a rival, beside others that have one, each with how sure it is; "" of none."""
-    told = [
-        f"{_said(c, 'only ')} ({sure_words(c)})"
+    identified = [
+        f"{_with_magnitude(c, 'only ')} ({sure_words(c)})"
         for c in causes
         if not c.alternatives and is_significant(c)
     ]
-    return f" Also identified: {'; '.join(told)}." if told else ""
+    return f" Also identified: {'; '.join(identified)}." if identified else ""
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
@@ -194,8 +188,8 @@ def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
         return f"There is structure that no known cause explains: {what}.{known}"
     broken = [structure_words(u) for u in outcome.unexplained if u.limit]
     if broken:
-        said = f"No cause is named: {'; '.join(broken)}"
-        return said if said.endswith("?") else f"{said}."
+        text = f"No cause is named: {'; '.join(broken)}"
+        return text if text.endswith("?") else f"{text}."
     channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
     where = ", ".join(channels) or "the data"
     return f"There is structure in {where} that no known cause explains.{known}"
@@ -220,4 +214,4 @@ def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis)
     )
     why = "" if analysis.several_torques else ", because each unit was measured at one torque"
     beside = _beside(outcome.causes[1:])
-    return f"{where}, and these end points cannot tell why: {rival}{why}.{beside}"
+    return f"{where}, and these end points do not show why: {rival}{why}.{beside}"

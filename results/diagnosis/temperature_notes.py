@@ -22,15 +22,17 @@ def lag_notes(identified: Identification) -> list[str]:
     if lag is None:
         return []
     times = joined((f"{s:.3g}" for s in lag.lags_s), "and")
-    said = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
+    note = (
+        f"{title_of(THERMAL)}: in the model the gap follows the temperature with a lag of {times} s"
+    )
     if lag.stages > 1:
-        said += ", twice in a row"
+        note += " (two lags in series)"
     if lag.warmer_K:
         side = "warmer" if lag.warmer_K > 0 else "colder"
-        said += f", and began {abs(lag.warmer_K):.2g} K {side} than the reading"
+        note += f", starting {abs(lag.warmer_K):.2g} K {side} than the reading"
     if not lag.shown:
-        said += "; without a lag this record is explained nearly as well"
-    return [said]
+        note += "; a model without a lag explains this record nearly as well"
+    return [note]
 
 
 def zero_notes(explained: ExplainedSweep, unexplained: Iterable[Unexplained]) -> list[str]:

@@ -24,21 +24,23 @@ def unit_notes(analysis: SweepAnalysis) -> list[str]:
     return [*_share_notes(analysis.explained), *_size_notes(analysis.model)]
 
 
-def _apart_notes(apart: UnitsApart) -> list[str]:
+def _apart_notes(separate: UnitsApart) -> list[str]:
     """What each unit shows by itself, and which one the figures are of."""
-    found = [
-        "the units differ, so each was diagnosed by its own rows; figures, calibrated values, errors on "
-        f"held-out rows and the extended model are those of {apart.unit}"
+    notes = [
+        "the units differ, so each was diagnosed separately; figures, calibrated values, errors on held-out "
+        f"rows and the extended model are those of {separate.unit}"
     ]
-    return found + [f"{name} by itself: {_decided(own)}" for name, own in apart.decisions.items()]
+    return notes + [
+        f"{name} alone: {_decided(decision)}" for name, decision in separate.decisions.items()
+    ]
 
 
-def _decided(own: Decision | None) -> str:
-    if own is None:
+def _decided(decision: Decision | None) -> str:
+    if decision is None:
         return "too few rows for a verdict"
-    if own.verdict == "unknown":
-        return structure_words(own.unexplained[0])
-    return "; ".join(map(_sized, own.causes)) or "agrees with the simulation"
+    if decision.verdict == "unknown":
+        return structure_words(decision.unexplained[0])
+    return "; ".join(map(_sized, decision.causes)) or "agrees with the simulation"
 
 
 def _sized(cause: NamedCause) -> str:
@@ -49,17 +51,17 @@ def _sized(cause: NamedCause) -> str:
 def _share_notes(explained: ExplainedSweep) -> list[str]:
     """What the units have in common, and how they differ."""
     names = explained.prepared.sweep.units
-    found = []
+    notes = []
     for cause, shares in explained.shares.items():
         title = title_of(cause)
         if not shares.differ:
-            found.append(f"{title}: common to all {len(names)} units")
+            notes.append(f"{title}: common to all {len(names)} units")
             continue
-        own = zip(names, shares.share, shares.share_std, strict=True)
-        each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
-        mean = "differs between units; the extended model gives each of them the mean"
-        found.append(f"{title}: {mean}; their shares of it: {each}")
-    return found
+        shares_of_units = zip(names, shares.share, shares.share_std, strict=True)
+        values = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in shares_of_units), "units")
+        mean = "differs between units; the extended model uses the mean for all of them"
+        notes.append(f"{title}: {mean}; shares of the mean: {values}")
+    return notes
 
 
 def _size_notes(model: ExtendedModel) -> list[str]:
@@ -67,11 +69,11 @@ def _size_notes(model: ExtendedModel) -> list[str]:
     if len(model.own) < 2:
         return []
     gaps = {unit: model.gap_arcsec + gap for unit, (_, gap) in model.own.items()}
-    each = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
-    apart = max(gaps.values()) - min(gaps.values())
-    found = [f"gap of each unit: {each}; they are {apart:.1f} arcsec apart"]
+    values = listed((f"{unit or '?'} {gap:.1f} arcsec" for unit, gap in gaps.items()), "units")
+    spread = max(gaps.values()) - min(gaps.values())
+    notes = [f"gap of each unit: {values}; they are {spread:.1f} arcsec apart"]
     softer = {u: 100 * compliance / model.compliance for u, (compliance, _) in model.own.items()}
     if max(softer.values()) - min(softer.values()) > UNITS_APART_PCT:
-        each = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
-        found.append(f"difference of each unit's compliance from the common value: {each}")
-    return found
+        values = listed((f"{unit or '?'} {signed(s, 1)} %" for unit, s in softer.items()), "units")
+        notes.append(f"difference of each unit's compliance from the common value: {values}")
+    return notes

@@ -20,37 +20,40 @@ LEAST_OTHER_WAY = 0.05
 """Of the rows: fewer on one side, or in one direction, are an approach or a turn."""
 WITHOUT = {
     "time_s": "friction cannot be distinguished from rate dependence, nor drift from wear",
-    "temperature_C": "a gap that changes with it looks like wear or drift",
-    "input_angle_deg": "a zero or a stiffness that changes with it looks like scatter between cycles",
+    "temperature_C": "a gap that changes with temperature looks like wear or drift",
+    "input_angle_deg": "a zero offset or a stiffness that changes with this angle looks like scatter between "
+    "cycles",
 }
 """What a channel that was not recorded leaves open."""
 
 
 def unseen_notes(history: History, band_Nm: float, causes: Iterable[NamedCause] = ()) -> list[str]:
     """Sides, directions, rates and channels that the record lacks; `band_Nm` is the gap's crossing."""
-    found = []
+    notes = []
     torque = history.torque_Nm
     if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < LEAST_OTHER_WAY:
-        found.append(
-            "torque acts one way only: the record does not show the gap, a shifted torque reading, or a "
-            "stiffness that differs between directions; sweep to −T as well"
+        notes.append(
+            "torque acts in one direction only: the record does not show the gap, a shifted torque reading, "
+            "or a stiffness that differs between directions; also sweep to −T"
         )
     direction = direction_of_loading(history)
     if min(np.mean(direction > 0), np.mean(direction < 0)) < LEAST_OTHER_WAY:
-        found.append(
-            "torque never returns: the record does not show friction; sweep back to zero as well"
+        notes.append(
+            "torque changes in one direction only: the record does not show friction; also sweep back to zero"
         )
     elif history.time_s is not None and at_one_rate_on_ramps(history):
-        told = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
+        distinguished = any(c.id == FRICTION and RATE not in c.alternatives for c in causes)
         lag = (
-            "only the form of its loop distinguishes friction from a lag"
-            if told
-            else "a lag makes the same loop as friction"
+            "only the form of the loop distinguishes friction from a lag"
+            if distinguished
+            else "a lag gives the same loop as friction"
         )
-        found.append(f"all cycles run at one rate: {lag}; repeat one at 1/{FASTER:g} of the rate")
-    found += [
+        notes.append(
+            f"all cycles have the same rate: {lag}; repeat one cycle at 1/{FASTER:g} of the rate"
+        )
+    notes += [
         f"{channel_words(channel)} was not recorded: {leaves_open}"
         for channel, leaves_open in WITHOUT.items()
         if getattr(history, channel) is None
     ]
-    return found
+    return notes

@@ -21,7 +21,7 @@ from flexspline.results.numbers import decimals_for, figures_text, grouped
 
 SPECIMENS = {
     YOUNGS_MODULUS: "material softer or stiffer than stated",
-    LOAD_ZONE: "load that enters at the lobes, not evenly",
+    LOAD_ZONE: "load that enters at the lobes, not uniformly",
 }
 """Causes that only specimens show."""
 VERDICTS = {
@@ -58,12 +58,12 @@ def sure_words(cause: NamedCause) -> str:
     if cause.deviations >= SIZE_KNOWN or _is_wider(cause):  # of a loop that closes at T = 0
         return words
     if cause.deviations < SIZE_AS_NONE:
-        return "something is there, its size is not known"
+        return "an effect exists, its size is not known"
     return f"{words}, size uncertain"
 
 
 def odds_words(nats: float) -> str:
-    """Evidence as odds: what "e to the nats to 1" means to a person."""
+    """Evidence as odds, e^nats to 1, in words."""
     exponent = nats / log(10)
     if exponent > 6:
         return "more than a million to 1"
@@ -150,7 +150,7 @@ def free_words(outcome: DiagnosisOutcome) -> str:
     gain = outcome.gain
     if gain is None or gain.held_out.each or outcome.verdict != "consistent":
         return ""
-    return "stiffness and gap calibrated without that limit"
+    return "stiffness and gap calibrated without this limit"
 
 
 def noise_words(gain: Gain) -> str:

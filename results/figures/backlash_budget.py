@@ -174,11 +174,11 @@ def _sources(axes: Axes, backlash: Backlash) -> None:
     """A bar for each source of doubt; which is not stated says so."""
     stds = backlash.std_by_source_arcsec
     entry = quantity(STD_KEY)
-    said = []
+    annotations = []
     for row, source in enumerate(SOURCES):
         axes.barh(row, stds.get(source, 0.0), height=0.55, color=ACCENT)
         stated = source in stds
-        said.append(axes.annotate(
+        annotations.append(axes.annotate(
             entry.short(stds[source]) if stated else NOT_STATED.replace(" ", "\n"),
             (stds.get(source, 0.0), row),
             (5, 0),
@@ -193,17 +193,17 @@ def _sources(axes: Axes, backlash: Backlash) -> None:
     axes.set_xlim(0, max(max(stds.values(), default=0.0), 1e-9))
     axes.set_xticks([])
     axes.spines["bottom"].set_visible(False)
-    for text in said:
+    for text in annotations:
         fit([text], 0.9 * axes.bbox.width)
 
 
 def _caption(content: ReportContent) -> str:
-    said = "The terms as they add up"
+    text = "The terms of the backlash sum"
     if content.backlash.std_arcsec is not None:
-        said += ", the total with one standard deviation, and its sources"
+        text += ", the total with one standard deviation, and the sources of this deviation"
     if content.extended is not None:
-        return f"{said}. Below the simulated sum: what the model in {content.extended.model} adds."
-    return f"{said}."
+        return f"{text}. Below the simulated sum: the terms that {content.extended.model} adds."
+    return f"{text}."
 
 
 CHART = Chart(

@@ -35,5 +35,5 @@ class Chart:
 
 def chart(name: str) -> Chart:
     """The chart of that name; its file is loaded when it is first asked for."""
-    found: Chart = import_module(f"flexspline.results.figures.{name}").CHART
-    return found
+    declared: Chart = import_module(f"flexspline.results.figures.{name}").CHART
+    return declared

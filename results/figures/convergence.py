@@ -78,8 +78,8 @@ def _settling(
     run: RunResult, extended: ExtendedBacklash | None
 ) -> tuple[dict[str, Stiffness]] | None:
     """None where every stiffness was solved on one mesh."""
-    found = run.stiffnesses
-    solved = {"K_b_Nm_per_rad": found.K_b, "K_e_Nm_per_rad": found.K_e}
+    stiffnesses = run.stiffnesses
+    solved = {"K_b_Nm_per_rad": stiffnesses.K_b, "K_e_Nm_per_rad": stiffnesses.K_e}
     settling = {key: K for key, K in solved.items() if len(K.levels) > 1}
     return (settling,) if settling else None
 

@@ -57,8 +57,8 @@ def _stations(angle_deg: np.ndarray) -> str:
     """Where forces are solved: the model's stations are not the teeth themselves."""
     if len(angle_deg) < 2:
         return ""
-    apart = np.diff(angle_deg).mean()
-    return f"One bar for each station of the model, {apart:.2f}° apart: the force of a pair of teeth there"
+    spacing = np.diff(angle_deg).mean()
+    return f"One bar for each station of the model, {spacing:.2f}° apart: the force of a pair of teeth there"
 
 
 CHART = Chart(

@@ -148,8 +148,8 @@ def _span(axes: Axes, x: float, low: float, high: float) -> None:
 
 
 def _of_run(run: RunResult, extended: ExtendedBacklash | None) -> tuple[Any, ...]:
-    design, found = run.design, run.stiffnesses
-    K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad
+    design, stiffnesses = run.design, run.stiffnesses
+    K_b, K_e = stiffnesses.in_sum(design).K_Nm_per_rad, stiffnesses.K_e.K_Nm_per_rad
 
     def angle(torque: np.ndarray) -> np.ndarray:
         return np.asarray(angle_rad(design, torque, K_b, K_e)) * ARCSEC_PER_RAD

@@ -30,8 +30,7 @@ def torque_title(name: str) -> str:
 
 def wrapped(text: str, letters: int, lines: int = 2) -> str:
     """Broken into no more than so many lines of about so many letters; the rest becomes "…"."""
-    found = textwrap.wrap(text, letters, max_lines=lines, placeholder=" …")
-    return "\n".join(found)
+    return "\n".join(textwrap.wrap(text, letters, max_lines=lines, placeholder=" …"))
 
 
 def fit(texts: Sequence[Text], width_px: float) -> None:
@@ -60,8 +59,8 @@ def thin_labels(axes: Axes) -> None:
         return
     widest = max(t.get_window_extent().width for t in labels) + 4
     at = axes.get_xaxis_transform().transform([(x, 0) for x in axes.get_xticks()])[:, 0]
-    apart = float(min(abs(b - a) for a, b in pairwise(at)))
-    step = -(-int(widest) // max(int(apart), 1))
+    spacing = float(min(abs(b - a) for a, b in pairwise(at)))
+    step = -(-int(widest) // max(int(spacing), 1))
     axes.set_xticks(
         axes.get_xticks(), [t.get_text() if i % step == 0 else "" for i, t in enumerate(labels)]
     )

@@ -33,8 +33,8 @@ def in_function(name: str, module: str) -> str:
     """A module as `const name_js = (() => { …; return {its exports}; })();`."""
     given: list[str] = []
 
-    def bound(found: re.Match[str]) -> str:
-        word, names, source = found.groups()
+    def bound(match: re.Match[str]) -> str:
+        word, names, source = match.groups()
         if word == "import":
             taken = names.removeprefix("* as ").replace(" as ", ": ")
             return f"const {taken} = {_constant(source)};"
@@ -43,8 +43,8 @@ def in_function(name: str, module: str) -> str:
             given.append(f"{outer or inner}: {value}")
         return ""
 
-    def declared(found: re.Match[str]) -> str:
-        given.append(found[1])
+    def declared(match: re.Match[str]) -> str:
+        given.append(match[1])
         return ""
 
     body = _DECLARED.sub(declared, _NAMES.sub(bound, module))

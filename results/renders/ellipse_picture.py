@@ -23,7 +23,7 @@ from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import Shot, View, shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
 from flexspline.results.renders.surface import crease_edges, lines, skin
-from flexspline.results.renders.turntable import Drawn, Said, turning
+from flexspline.results.renders.turntable import Drawn, ViewWords, turning
 from flexspline.results.style import ACCENT
 
 _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))
@@ -50,12 +50,12 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
         layers = stress_layers(seen.points, scene.whole.mises, seen.shown, field.peak, line)
         return shoot([*layers, wires(before, ACCENT, 1.3 * line)], seen.view, frame)
 
-    said = scene.said
+    text = scene.words
     write_sheet(
         path,
         shot(scene.main, MAIN, 2.4),
         shot(scene.inset, INSET, 2.0),
-        Sheet(said.title, said.subtitle, "along the axis", said.note, said.bar, said.mark),
+        Sheet(text.title, text.subtitle, "along the axis", text.note, text.bar, text.mark),
     )
 
 
@@ -66,7 +66,7 @@ def turning_ellipse(field: SolidField, amplitude_mm: float) -> bytes:
     drawn = Drawn(
         main.points, whole.mises, main.shown, main.view, field.peak, scene.before, whole.nodes
     )
-    return turning(drawn, scene.said)
+    return turning(drawn, scene.words)
 
 
 def write_turning_ellipse(path: Path, field: SolidField, amplitude_mm: float) -> None:
@@ -82,7 +82,7 @@ class _Scene:
     main: Seen
     inset: Seen
     before: np.ndarray
-    said: Said
+    words: ViewWords
 
 
 @remembered(1)
@@ -97,7 +97,7 @@ def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
     main, mark = _facing_peak(field, whole.nodes, inset)
     moving = np.linalg.norm(shift, axis=1)[edges].max(axis=1) > _STILL * size
     beyond = goes_beyond(field.peak, shown, whole.mises)
-    said = Said(
+    text = ViewWords(
         title="Flexspline on the wave generator: stress",
         subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
         note=f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
@@ -105,16 +105,16 @@ def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
         bar=stress_bar(field.peak, beyond),
         mark=mark,
     )
-    return _Scene(whole, main, inset, edges[moving], said)
+    return _Scene(whole, main, inset, edges[moving], text)
 
 
 def _facing_peak(field: SolidField, nodes: np.ndarray, inset: Seen) -> tuple[Seen, Mark]:
     """The first of the views that shows the peak, or the first of all, and the mark in it."""
-    found: list[tuple[Seen, Mark]] = []
+    views: list[tuple[Seen, Mark]] = []
     for view in _VIEWS:
         seen = Seen(inset.points, inset.shown, view)
         mark = peak_mark(field.peak, field.mesh.sector_deg, nodes, seen, inset)
         if mark.shown_by == "main":
             return seen, mark
-        found.append((seen, mark))
-    return found[0]
+        views.append((seen, mark))
+    return views[0]

@@ -130,12 +130,12 @@ def sector_words(sector_deg: float) -> str:
 def _copies(at: np.ndarray, sector_deg: float) -> list[np.ndarray]:
     if sector_deg >= 360:
         return [at]
-    found = []
+    copies = []
     for turn in np.radians(np.arange(0.0, 360.0, 2 * sector_deg)):
         for y in (at[1], -at[1]):
             c, s = np.cos(turn), np.sin(turn)
-            found.append(np.array([c * at[0] - s * y, s * at[0] + c * y, at[2]]))
-    return found
+            copies.append(np.array([c * at[0] - s * y, s * at[0] + c * y, at[2]]))
+    return copies
 
 
 def _is_visible(drawn: pv.PolyData, point: np.ndarray, eye: np.ndarray) -> bool:

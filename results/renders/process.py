@@ -1,8 +1,8 @@
 """Drawing in a separate process: if a graphics driver crashes, the program continues.
 
-The process is started for the first picture and draws more after it, so that VTK is loaded once; who draws
-much has two. What is to be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers
-are lines of JSON.
+The process is started for the first picture and draws the next ones too, so that VTK is loaded once.
+A run has two such processes. The arguments are passed in a file (`pipeline.packing`); questions and
+answers are lines of JSON.
 """
 
 from __future__ import annotations
@@ -90,10 +90,12 @@ class DrawingProcess:
                 self._folder = tempfile.TemporaryDirectory(
                     prefix="flexspline-picture-", ignore_cleanup_errors=True
                 )
-            asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
+            packed_in, made = (
+                Path(self._folder.name) / n for n in ("arguments.npz", "picture.png")
+            )
             made.unlink(missing_ok=True)
-            asked.write_bytes(content)
-        question = {"function": name, "asked": str(asked), "made": str(made)}
+            packed_in.write_bytes(content)
+        question = {"function": name, "arguments": str(packed_in), "made": str(made)}
         answer = self._exchange(json.dumps(question))
         if answer is None and self._closed:
             raise NotDrawnError(STOPPED)
@@ -132,10 +134,10 @@ class DrawingProcess:
     def _running(self) -> subprocess.Popen[str]:
         if self._process is None:
             assert self._folder is not None
-            with (Path(self._folder.name) / "said.txt").open("wb") as said:
+            with (Path(self._folder.name) / "stderr.txt").open("wb") as stderr:
                 self._process = subprocess.Popen(
                     child_command(__name__, "serve"),
-                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=stderr, text=True,
                 )  # fmt: skip
         return self._process
 
@@ -147,21 +149,23 @@ class DrawingProcess:
         self._end()
         if self._too_slow:
             self._too_slow = False
-            return f"the process that draws gave no picture within {self.slowest_s:g} s"
+            return f"the drawing process made no picture within {self.slowest_s:g} s"
         how = f"exit status {status}"
         with contextlib.suppress(ValueError):
             how = signal.Signals(-status).name
-        said = (Path(self._folder.name) / "said.txt").read_text("utf-8", "replace").split("\n")
+        written = (Path(self._folder.name) / "stderr.txt").read_text("utf-8", "replace").split("\n")
         last = next(
-            (f", {one_line(w, 120)}" for s in reversed(said) if (w := _VTK_LOG.sub("", s).strip())),
+            (
+                f", {one_line(w, 120)}"
+                for s in reversed(written)
+                if (w := _VTK_LOG.sub("", s).strip())
+            ),
             "",
         )
-        ended = f"the process that draws ended ({how}{last})"
+        ended = f"the drawing process ended ({how}{last})"
         if how == KILLED:
-            return (
-                f"{ended}, as a system without memory left makes it; free memory or draw elsewhere"
-            )
-        return f"{ended}, as missing or broken graphics drivers make it; {ADVICE}"
+            return f"{ended}: probably the system had no memory left; free memory or draw on another machine"
+        return f"{ended}: probably a graphics driver is missing or broken; {ADVICE}"
 
     def _end(self) -> None:
         process, self._process = self._process, None
@@ -180,8 +184,8 @@ def serve() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: an end without a traceback
     answers = private_stdout("utf-8")  # the answers alone
     for line in sys.stdin:
-        asked = json.loads(line)
-        print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
+        question = json.loads(line)
+        print(json.dumps({"reason": _drawn(**question)}), file=answers, flush=True)
 
 
 _known: deque[tuple[bytes, tuple[Any, ...]]] = deque(maxlen=2)
@@ -189,7 +193,7 @@ _known: deque[tuple[bytes, tuple[Any, ...]]] = deque(maxlen=2)
 
 
 def _arguments(content: bytes) -> tuple[Any, ...]:
-    """The very objects of before where they are asked for again (`results.renders.remembered`)."""
+    """The same objects as before for the same content (`results.renders.remembered`)."""
     for packed_before, arguments in _known:
         if packed_before == content:
             return arguments
@@ -197,12 +201,12 @@ def _arguments(content: bytes) -> tuple[Any, ...]:
     return _known[-1][1]
 
 
-def _drawn(function: str, asked: str, made: str) -> str:
+def _drawn(function: str, arguments: str, made: str) -> str:
     """Draw; why it failed, or ""."""
     module, _, name = function.partition(":")
     try:
         write = getattr(import_module(module), name)
-        write(Path(made), *_arguments(Path(asked).read_bytes()))
+        write(Path(made), *_arguments(Path(arguments).read_bytes()))
     except ComputationError as error:
         return one_line(str(error))
     except Exception as error:  # whatever a library raises costs its own picture

@@ -12,26 +12,26 @@ T = TypeVar("T")
 
 
 def remembered(count: int) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Keep the last `count` answers, each for the very objects that it was found for: arrays have no hash.
+    """Keep the last `count` results, each for the identical argument objects: arrays have no hash.
 
-    Whoever gets an answer twice gets one object: it is not changed.
+    A repeated call returns the same object, so callers must not change it.
     """
 
     def of(find: Callable[P, T]) -> Callable[P, T]:
         known: deque[tuple[tuple[object, ...], T]] = deque(maxlen=count)
 
         @wraps(find)
-        def found(*given: P.args, **named: P.kwargs) -> T:
-            asked = (*given, *named.values())
+        def cached(*given: P.args, **named: P.kwargs) -> T:
+            arguments = (*given, *named.values())
             for before, answer in known:
-                if len(before) == len(asked) and all(
-                    a is b for a, b in zip(before, asked, strict=True)
+                if len(before) == len(arguments) and all(
+                    a is b for a, b in zip(before, arguments, strict=True)
                 ):
                     return answer
             answer = find(*given, **named)
-            known.append((asked, answer))
+            known.append((arguments, answer))
             return answer
 
-        return found
+        return cached
 
     return of

@@ -88,10 +88,6 @@ def write_sheet(path: Path, main: Shot, inset: Shot, sheet: Sheet) -> None:
         save_png(figure, path)
 
 
-def _box(x: float, y: float, w: float, h: float) -> tuple[float, float, float, float]:
-    return x / WIDTH, y / HEIGHT, w / WIDTH, h / HEIGHT
-
-
 def _pt(pixels: float) -> float:
     return pixels * 72 / _DPI
 
@@ -132,7 +128,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    axes = figure.add_axes(_box(1392, 170, 46, 750))
+    axes = figure.add_axes((1392 / WIDTH, 170 / HEIGHT, 46 / WIDTH, 750 / HEIGHT))
     scale = figure.colorbar(
         ScalarMappable(Normalize(0.0, bar.high), COLOUR_MAP),
         cax=axes,

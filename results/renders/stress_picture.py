@@ -20,7 +20,7 @@ from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.surface import opening, skin
-from flexspline.results.renders.turntable import Drawn, Said, turning
+from flexspline.results.renders.turntable import Drawn, ViewWords, turning
 
 
 def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm: float) -> None:
@@ -32,7 +32,7 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
     part_name : opens the title ("Flexspline", "Output shaft").
     """
     whole, main, inset = _seen(field)
-    said = _said(field, whole, main, inset, part_name, torque_Nm)
+    text = _view_words(field, whole, main, inset, part_name, torque_Nm)
     write_sheet(
         path,
         shoot(stress_layers(main.points, whole.mises, main.shown, field.peak), main.view, MAIN),
@@ -41,7 +41,7 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
             inset.view,
             INSET,
         ),
-        Sheet(said.title, said.subtitle, "from below", said.note, said.bar, said.mark),
+        Sheet(text.title, text.subtitle, "from below", text.note, text.bar, text.mark),
     )
 
 
@@ -49,7 +49,7 @@ def turning_torque_stress(field: SolidField, part_name: str, torque_Nm: float) -
     """The same as a view that turns in a browser (`results.renders.turntable`)."""
     whole, main, inset = _seen(field)
     drawn = Drawn(whole.nodes, whole.mises, main.shown, main.view, field.peak)
-    return turning(drawn, _said(field, whole, main, inset, part_name, torque_Nm))
+    return turning(drawn, _view_words(field, whole, main, inset, part_name, torque_Nm))
 
 
 def write_turning_torque_stress(
@@ -71,11 +71,11 @@ def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
 
 
 @remembered(1)
-def _said(
+def _view_words(
     field: SolidField, whole: WholePart, main: Seen, inset: Seen, part_name: str, torque_Nm: float
-) -> Said:
+) -> ViewWords:
     beyond = goes_beyond(field.peak, main.shown, whole.mises)
-    return Said(
+    return ViewWords(
         title=f"{part_name}: stress under load torque",
         subtitle=f"von Mises stress, torque {torque_Nm:.4g} N·m; cut open, not deformed",
         note=stress_note(field.peak, beyond),

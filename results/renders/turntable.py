@@ -49,7 +49,7 @@ class Drawn:
 
 
 @dataclass(frozen=True)
-class Said:
+class ViewWords:
     """The words around a view."""
 
     title: str
@@ -59,26 +59,26 @@ class Said:
     mark: Mark
 
 
-def turning(drawn: Drawn, said: Said) -> bytes:
+def turning(drawn: Drawn, text: ViewWords) -> bytes:
     """The view as JSON: its words, scale and mark, and the scene in base64."""
     facets = drawn.shown.facets
     mesh = surface(drawn.points, facets, len(facets) <= COARSE_BEYOND)
     node, skin = np.asarray(mesh.point_data["node"]), np.asarray(mesh.points)
-    inside, labels = ticks(said.bar.high)
-    marks = [*zip(inside, labels, strict=True), (said.bar.high, said.bar.high_text)]
-    nearest = int(np.argmin(((skin - said.mark.at_mm) ** 2).sum(axis=1)))
+    inside, labels = ticks(text.bar.high)
+    marks = [*zip(inside, labels, strict=True), (text.bar.high, text.bar.high_text)]
+    nearest = int(np.argmin(((skin - text.mark.at_mm) ** 2).sum(axis=1)))
     view = {
-        "title": said.title,
-        "subtitle": said.subtitle,
-        "note": said.note.replace("\n", " "),
+        "title": text.title,
+        "subtitle": text.subtitle,
+        "note": text.note.replace("\n", " "),
         "bar": {
-            "label": said.bar.label,
-            "beyond": said.bar.beyond,
-            "ticks": [{"at": round(v / said.bar.high, 4), "text": t} for v, t in marks],
+            "label": text.bar.label,
+            "beyond": text.bar.beyond,
+            "ticks": [{"at": round(v / text.bar.high, 4), "text": t} for v, t in marks],
         },
         "mark": {
-            "text": said.mark.text.replace("\n(hidden)", ""),
-            "at": _rounded(said.mark.at_mm),
+            "text": text.mark.text.replace("\n(hidden)", ""),
+            "at": _rounded(text.mark.at_mm),
             "normal": _rounded(mesh.point_data["Normals"][nearest]),
         },
         "camera": _camera(drawn.points[np.unique(facets)], drawn.view),

@@ -31,10 +31,10 @@ def reports_of(
     """
 
     def page() -> bytes:
-        images = {each: png(path) for each, path in pictures.items()}
-        for each, data in (smaller or {}).items():
-            if each in images:
-                images[each] = replace(images[each], data=data)
+        images = {picture: png(path) for picture, path in pictures.items()}
+        for picture, data in (smaller or {}).items():
+            if picture in images:
+                images[picture] = replace(images[picture], data=data)
         return page_of(document, images, views)
 
     with ThreadPoolExecutor(1) as beside:

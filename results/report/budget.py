@@ -85,7 +85,7 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         yield Paragraph(
             plain(
                 f"With the extended model in {model} the backlash is {text(total)} arcsec: the measured "
-                f"stiffness and gap, and the causes found, {'add' if more >= 0 else 'take off'} "
+                f"stiffness and gap, and the identified causes, {'add' if more >= 0 else 'subtract'} "
                 f"{text(abs(more))} arcsec. No standard deviation is computed for this sum."
             )
         )

@@ -41,24 +41,24 @@ def report_content(
     attached: tuple[Attachment, ...],
 ) -> ReportContent:
     """What a run's report says, before any layout."""
-    found, design = result.stiffnesses, result.design
+    stiffnesses, design = result.stiffnesses, result.design
     peaks = {name: solved.peak for name, solved in result.fields.items()}
     return ReportContent(
         design=design,
         version=__version__,
-        stiffnesses=found.solved,
-        K_series_Nm_per_rad=found.series_Nm_per_rad(design),
+        stiffnesses=stiffnesses.solved,
+        K_series_Nm_per_rad=stiffnesses.series_Nm_per_rad(design),
         backlash=result.backlash,
         pictures=pictures.paths,
         missing_pictures=pictures.missing,
         flexspline_peak=peaks.get("flexspline_torque"),
         shaft_peak=peaks.get("shaft_torque"),
-        wave_generator_peak=peaks.get("wave_generator", found.wave_generator_peak),
-        half_seat_peak=found.half_seat_peak,
+        wave_generator_peak=peaks.get("wave_generator", stiffnesses.wave_generator_peak),
+        half_seat_peak=stiffnesses.half_seat_peak,
         linear_limit=result.linear_limit,
-        ring=found.ring,
+        ring=stiffnesses.ring,
         gear=result.gear,
-        gear_missing=str(found.missing.get("gear", "")),
+        gear_missing=str(stiffnesses.missing.get("gear", "")),
         warnings=all_warnings(result),
         stage_seconds=result.stage_seconds,
         versions=library_versions(),

@@ -79,7 +79,7 @@ def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
         return (
             "Compared with the simulated torque-angle curve of the whole gear (contact of teeth, rim, race "
             f"and balls): {gap}, a chord of {_twist(p)} arcsec for each N·m up to "
-            f"{p.bend.torque_Nm[-1]:.4g} N·m, and up to {most:.3g} arcsec beside that chord. "
+            f"{p.bend.torque_Nm[-1]:.4g} N·m, and deviations of up to {most:.3g} arcsec from this chord. "
             f"{_what_counts(p)}"
         )
     source = "as given" if used.given else f"computed, ± {100 * used.error:.2g} %"
@@ -105,18 +105,21 @@ def _what_counts(p: Prediction) -> str:
     ]
     if not missing:
         return "A stiffness or gap that differs within these limits is not a finding."
-    return f"No uncertainty of {joined(missing, 'or')} is stated, so any difference beyond the noise counts."
+    return (
+        f"No uncertainty of {joined(missing, 'or')} is stated, so every difference beyond the noise is a "
+        "finding."
+    )
 
 
 def _compared_specimens(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     doubt = diagnosis.design.uncertainty.youngs_modulus_pct
     modulus = (
-        f"Young's modulus may be off by {doubt:g} % (1σ)"
+        f"The stated uncertainty of Young's modulus is {doubt:g} % (1σ)"
         if doubt
-        else "No uncertainty of Young's modulus is stated; it counts as exact"
+        else "No uncertainty of Young's modulus is stated, so the modulus is taken as exact"
     )
     source = "scaled from K_b and K_e as given" if used.given else "solved for each specimen"
     return (
-        f"Compared with the simulated stiffness, {source}. {modulus}. A dimension may be off "
-        "by the general tolerance ISO 2768-m without that being a finding."
+        f"Compared with the simulated stiffness, {source}. {modulus}. A dimension that differs by no more "
+        "than the general tolerance ISO 2768-m is not a finding."
     )

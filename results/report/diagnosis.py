@@ -106,8 +106,8 @@ def _causes(outcome: DiagnosisOutcome) -> Iterable[Block]:
         rows=tuple(_cause(c) for c in outcome.causes),
     )  # fmt: skip
     yield Paragraph(
-        "± is one standard deviation; twice that covers 95 of 100 cases. The odds compare the best "
-        "explanation with the cause to the best one without it.",
+        "± is one standard deviation; two standard deviations cover 95 of 100 cases. The odds compare the "
+        "best explanation with this cause and the best explanation without it.",
         small=True,
     )
 
@@ -170,7 +170,7 @@ def _model(diagnosis: Diagnosis) -> Iterable[Block]:
     yield Paragraph(
         code("extended_model.toml")
         + plain(
-            f" beside this report holds the calibrated simulation{added}. This command gives the angle "
+            f" beside this report contains the calibrated simulation{added}. This command computes the angle "
             "for any torque history:"
         )
     )
@@ -178,7 +178,7 @@ def _model(diagnosis: Diagnosis) -> Iterable[Block]:
 
 
 def _notes(diagnosis: Diagnosis) -> Iterable[Block]:
-    found = notes(diagnosis)
-    if found:
+    lines = notes(diagnosis)
+    if lines:
         yield Heading("Notes")
-        yield Bullets(tuple(map(capital, found)), small=True)
+        yield Bullets(tuple(map(capital, lines)), small=True)

@@ -17,9 +17,9 @@ from flexspline.results.report.spans import NBSP, Words, bold, plain
 
 def dimensions(design: Design) -> Iterable[Block]:
     """Every key of the design file with its value and unit, defaults included, by table."""
-    yield Heading("The design in figures", "figures")
+    yield Heading("Values of the design", "figures")
     yield Paragraph("Every key of the design file that has a value, defaults included.", small=True)
-    yield Facts(tuple((name, _said(name, table)) for name, table in _tables(design)))
+    yield Facts(tuple((name, _values_in_words(name, table)) for name, table in _tables(design)))
 
 
 def ratio(design: Design) -> str:
@@ -31,8 +31,8 @@ def weights(design: Design) -> str:
     """Mass of both parts."""
     m = masses(design)
     grams = (("flexspline", m.flexspline_g), ("shaft", m.shaft_g))
-    each = (f"{name} {quantity(f'{name}_mass_g').with_unit(g)}" for name, g in grams)
-    return f"{', '.join(each)}; without teeth"
+    printed = (f"{name} {quantity(f'{name}_mass_g').with_unit(g)}" for name, g in grams)
+    return f"{', '.join(printed)}; without teeth"
 
 
 def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -42,17 +42,17 @@ def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
         if not isinstance(table, dict):
             continue
         first = {"kind": table["kind"]} if "kind" in table else {}
-        own = first | {k: v for k, v in table.items() if not isinstance(v, dict | list)}
-        if own:
-            yield name, own
+        values = first | {k: v for k, v in table.items() if not isinstance(v, dict | list)}
+        if values:
+            yield name, values
         for inner, deeper in table.items():
             if isinstance(deeper, dict):
                 yield f"{name}.{inner}", deeper
             elif isinstance(deeper, list):
-                yield from ((f"{name}.{inner}[{i}]", each) for i, each in enumerate(deeper))
+                yield from ((f"{name}.{inner}[{i}]", entry) for i, entry in enumerate(deeper))
 
 
-def _said(name: str, table: Mapping[str, Any]) -> Words:
+def _values_in_words(name: str, table: Mapping[str, Any]) -> Words:
     """``length 30 mm, …``; the figures stand out. A deviation of 0 states nothing."""
     silent = name == "uncertainty"
     spans = (

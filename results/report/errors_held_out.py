@@ -28,8 +28,8 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
     if outcome.causes and share > 0:
         yield Paragraph(
-            f"The causes found explain {percent_of_all(share)} of the mean square error above "
-            "the noise floor."
+            f"The identified causes explain {percent_of_all(share)} of the mean square error above the noise "
+            "floor."
         )
 
 
@@ -57,11 +57,11 @@ def errors_at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
 
 
 def _errors(outcome: DiagnosisOutcome, gain: Gain) -> Iterable[tuple[str, float]]:
-    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
-    yield f"The simulation as designed{zeroed}", gain.rmse_before
+    zeroed = ", zero offset fitted" if gain.unit == "arcsec" else ""
+    yield f"Simulation as designed{zeroed}", gain.rmse_before
     yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
     if outcome.causes:
-        yield "With the causes found", gain.rmse_after
+        yield "With the identified causes", gain.rmse_after
     if free := free_words(outcome):
         yield capital(free), gain.rmse_after
-    yield f"{capital(noise_words(gain))}, the least to expect", gain.noise_floor
+    yield f"{capital(noise_words(gain))}, the smallest error to expect", gain.noise_floor

@@ -17,8 +17,8 @@ from flexspline.results.report.content import ReportContent
 from flexspline.results.sentences import sentence
 
 ENTERS = {
-    "uniform": "the ring turned rigidly",
-    "lobes": "the torque at the two ends of the major axis",
+    "uniform": "the ring is turned rigidly",
+    "lobes": "the torque enters at the two ends of the major axis",
 }
 """Where the torque enters, by `solver.load_case`."""
 LEAST_BEYOND_LIMIT = 5e-4
@@ -29,18 +29,18 @@ def assumptions(content: ReportContent) -> list[list[str]]:
     """Pairs of heading and text."""
     b = content.backlash
     case = content.design.solver.load_case
-    found = [
+    pairs = [
         [
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
             "mounting face is held, so the bolted joint between them counts as rigid. The shaft is "
-            f"held on the whole of its first face.{_beyond_flange(content.design)}",
+            f"held on its whole first face.{_beyond_flange(content.design)}",
         ],
         ["Teeth", _teeth(content)],
         [
             "Where the torque enters",
-            "K_b depends on it, so every K_b here has its load case. The sum uses "
-            f"“{case}”, {ENTERS[case]}.",
+            "K_b depends on where the torque enters, so every K_b has its load case. The sum uses "
+            f"“{case}”: {ENTERS[case]}.",
         ],
         ["Wave generator", _ellipse(content)],
         ["Bearing play", _play(content)],
@@ -48,42 +48,44 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Standard deviation",
             f"{sentence(spread_sentence(b))} "
             + (
-                "Only the values that the design file states under “uncertainty” are included, as "
-                "independent and normal; the error of the model itself is not."
+                "It includes only the values under “uncertainty” in the design file, as independent and "
+                "normally distributed; it does not include the error of the model."
                 if b.std_arcsec is not None
-                else "State it under “uncertainty”; without it the figures have no uncertainty."
+                else "To get one, state the uncertainties in the table “uncertainty” of the design file."
             ),
         ],
         [
-            "Left out of the sum",
-            "Friction hysteresis, stiffness that grows with load, temperature, wear, the "
+            "Not in the sum",
+            "Friction hysteresis, stiffness that grows with load, temperature, wear, and the "
             "compliance of circular spline, housing, bearings and bolts. Measured lost motion "
-            "contains all of them; it is often larger, and softer near zero torque.",
+            "contains all of them; it is often larger, and a real gear is often softer near zero torque.",
         ],
     ]
     if content.linear_limit is not None:
-        found.append(["Largest torque", _linear(content, content.linear_limit)])
+        pairs.append(["Largest torque", _linear(content, content.linear_limit)])
     peaks = (content.wave_generator_peak or content.flexspline_peak, content.shaft_peak)
     stated = [
         f"{part}: {p.excluded}" for part, p in zip(PART_NAMES, peaks, strict=True) if p is not None
     ]
     if stated:
-        own = content.flexspline_peak
+        flexspline_peak = content.flexspline_peak
         why = (
-            f"Of the flexspline under torque: {own.stands_for}. " if own and own.stands_for else ""
+            f"Flexspline under torque: {flexspline_peak.stands_for}. "
+            if flexspline_peak and flexspline_peak.stands_for
+            else ""
         )
-        found.append(
+        pairs.append(
             [
                 "Peak stress",
-                f"{why}Left out of the peaks: "
+                f"{why}Excluded from the peaks: "
                 + "; ".join(stated)
                 + ". Values there do not converge with mesh refinement; fillets that are not named here are "
-                "included. The stress of the wave generator and that of the torque act together in "
-                "service; they are given one by one and not added. "
-                + f"“{BORDER}” says that {MEANING}.",
+                "included. In service the stress from the wave generator and the stress from the torque act "
+                "together; here they are given separately and not added. "
+                + f"“{BORDER}” means: {MEANING}.",
             ]
         )
-    return found
+    return pairs
 
 
 def fatigue(content: ReportContent) -> str:
@@ -93,23 +95,23 @@ def fatigue(content: ReportContent) -> str:
     if limit is None or peak is None:
         return ""
     stress = quantity("wave_generator_peak_mises_MPa").with_unit(peak.mises_MPa)
-    said = f"The stress of the wave generator's ellipse alternates twice per turn: its peak of {stress}"
+    sentence = f"The stress of the wave generator's ellipse alternates twice per turn: its peak of {stress}"
     share = share_of_limit(peak, material)
     if share is not None:
         beyond = " It is above that limit." if share > 1 else ""
         return (
-            f"{said} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} Surface, "
-            "size, mean stress, tooth roots and the torque's stress are not considered."
+            f"{sentence} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} "
+            "Surface, size, mean stress, tooth roots and the stress from the torque are not considered."
         )
     if peak.mises_MPa > limit:
         return (
-            f"{said} is above the stated fatigue limit of {limit:g} MPa, and towards the edge nearby the "
-            "stress rises further."
+            f"{sentence} is above the stated fatigue limit of {limit:g} MPa, and the stress rises further "
+            "towards the nearby edge."
         )
     return (
-        f"{said} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge, towards "
-        "which the stress rises further. So it does not show whether the part stays below the stated fatigue "
-        f"limit of {limit:g} MPa."
+        f"{sentence} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge. The "
+        "stress rises further towards this edge, so the peak does not show whether the part stays below the "
+        f"stated fatigue limit of {limit:g} MPa."
     )
 
 
@@ -117,23 +119,23 @@ def _ellipse(content: ReportContent) -> str:
     """What the ellipse assumes of the seat, and how the stress moves with its width."""
     design, half = content.design, content.half_seat_peak
     width = design.flexspline.ring_width_mm
-    said = (
-        f"A given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, that "
-        "the seat follows without friction and without lifting off. In load case “lobes” the "
-        "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
-        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. This sets the stress."
+    text = (
+        f"The seat follows a given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, without friction and "
+        "without lifting off. In load case “lobes” the seat is held radially in both directions, so it "
+        f"cannot lift off. The seat is assumed as wide as the toothed ring, {width:g} mm, and cylindrical, "
+        "so the ring cannot tilt. This assumption determines the stress."
     )
     if content.wave_generator_peak is None:
-        return said
+        return text
     if why := content.wave_generator_peak.stands_for:
-        said += f" The peak: {why}."
+        text += f" Peak stress: {why}."
     if half is None:
-        return said
+        return text
     stress = quantity("wave_generator_peak_half_seat_mises_MPa")
     change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
     return (
-        f"{said} On a seat half as wide, {width / 2:g} mm in the ring's middle, the peak would be "
-        f"{stress.with_unit(half.mises_MPa)} ({signed(change, 0)} %; bolt holes left out)."
+        f"{text} With a seat half as wide, {width / 2:g} mm in the middle of the ring, the peak would be "
+        f"{stress.with_unit(half.mises_MPa)} ({signed(change, 0)} %; without bolt holes)."
     )
 
 
@@ -142,10 +144,10 @@ def _linear(content: ReportContent, limit: LinearLimit) -> str:
     torque = content.design.load.torque_Nm
     least = quantity("linear_torque_limit_Nm").with_unit(limit.torque_Nm)
     return (
-        f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
-        f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and "
-        "the bolts may lower this limit, and so may the wave generator's stress, which exists without "
-        f"torque; none of these is included.{_buckles(content, limit)}"
+        f"Stiffness, stress and backlash are linear in the torque. They are not valid beyond {least}: there "
+        f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of this limit. Buckling, the teeth, "
+        "the bolts, and the stress from the wave generator, which exists without torque, may lower this "
+        f"limit; they are not included.{_buckles(content, limit)}"
     )
 
 
@@ -155,8 +157,8 @@ def _buckles(content: ReportContent, limit: LinearLimit) -> str:
     if torque is None or torque >= limit.torque_Nm:
         return ""
     return (
-        f" The flexspline's tube buckles earlier, at about "
-        f"{quantity('buckling_torque_Nm').with_unit(torque)} by estimate."
+        " The flexspline's tube is estimated to buckle at a lower torque, about "
+        f"{quantity('buckling_torque_Nm').with_unit(torque)}."
     )
 
 
@@ -169,8 +171,8 @@ def _beyond_flange(design: Design) -> str:
     share = excess(design)
     by = "" if share is None else f" by about {percent(share)}"
     return (
-        f" The hat’s flange touches only the outer part of it: K_e is larger{by} than that of the same "
-        "shaft held only there (two bodies of revolution)."
+        f" The hat’s flange touches only the outer part of this face, so K_e is larger{by} than K_e of the "
+        "same shaft held only there (computed with two bodies of revolution)."
     )
 
 
@@ -193,11 +195,11 @@ def _teeth(content: ReportContent) -> str:
     difference = quantity("equivalent_ring_difference_pct").with_unit(ring.difference_pct)
     return (
         f"Drawn with {f.tooth_flank} flanks on a rim of {f.ring_thickness_mm:g} mm. Every K_b uses a "
-        f"plain ring of {bending}, {difference} more than the rim: it is as stiff in "
-        f"bending. Equivalent thickness in hoop stiffness: {membrane}; in torsion about the axis: "
+        f"plain ring of {bending}, {difference} thicker than the rim, with the bending stiffness of the "
+        f"toothed ring. Equivalent thickness in hoop stiffness: {membrane}; in torsion about the axis: "
         f"{torsion}. The mesh error of these thicknesses is below {percent(ring.change, 1)}; root fillets "
-        "and the axial stiffness of the teeth are not included. Stress at the tooth roots is not that "
-        "of the plain ring."
+        "and the axial stiffness of the teeth are not included. The stress at the tooth roots differs from "
+        "the stress of the plain ring."
     )
 
 
@@ -206,7 +208,7 @@ def _play(content: ReportContent) -> str:
     arcsec = quantity("backlash_arcsec.total")
     if design.bearing.bearing_play_model == "involute":
         text = (
-            "Involute model of the clearance; it ends at a play of "
+            "Involute model of the clearance; it is valid up to a play of "
             f"{design.gear.bearing_play_limit_um:.4g} µm "
             f"(here {design.bearing.radial_clearance_um:g} µm)."
         )
@@ -218,10 +220,10 @@ def _play(content: ReportContent) -> str:
         sign = "more" if b.model_form_arcsec >= 0 else "less"
         text += (
             f" The {other} model gives {arcsec.text(abs(b.model_form_arcsec))} {arcsec.unit} "
-            f"{sign}; that difference is error of the model, not part of the standard deviation."
+            f"{sign}; this difference is a model error and not part of the standard deviation."
         )
     if b.play_beyond_limit > LEAST_BEYOND_LIMIT:
         text += (
-            f" With probability {100 * b.play_beyond_limit:.2g} % the play lies beyond that end."
+            f" The play exceeds this limit with a probability of {100 * b.play_beyond_limit:.2g} %."
         )
     return text

@@ -37,7 +37,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         ),
         caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
         "“energy – work” is the relative difference of the stiffness from strain energy and from the "
-        f"work of torque or loads; {tables.UNCHECKED} where a check was not made.",
+        f"work of torque or loads; “{tables.UNCHECKED}” means not checked.",
     )  # fmt: skip
     for method, kind in dict.fromkeys((s["method"], s["kind"]) for s in solves):
         alike = [s for s in solves if (s["method"], s["kind"]) == (method, kind)]
@@ -49,11 +49,11 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield from shown_charts(content, roomy, "solver")
     stages = content.stage_seconds or {}
     if stages:
-        each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
+        times = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
         yield Paragraph(
             bold("Elapsed time:")
             + plain(
-                f" {each}. Stages run side by side, so these do not add up; those read from the cache "
+                f" {times}. Stages run in parallel, so these times do not add up; stages read from the cache "
                 "are not listed."
             )
         )
@@ -61,36 +61,36 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
 
 def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
     """A mesh's caption: which of the part's stiffnesses, whose names begin alike, are not from that mesh."""
-    said = plain(f"Mesh of the {part} and its named surfaces.")
-    own = {name: s for name, s in content.stiffnesses.items() if name.startswith(letter)}
-    turned = [name for name, s in own.items() if s.model == "axisymmetric"]
+    caption = plain(f"Mesh of the {part} and its named surfaces.")
+    solved = {name: s for name, s in content.stiffnesses.items() if name.startswith(letter)}
+    turned = [name for name, s in solved.items() if s.model == "axisymmetric"]
     if not turned:
-        return said
+        return caption
     return (
-        said
+        caption
         + plain(" ")
         + _listed(quantity(f"{name}_Nm_per_rad").symbol for name in turned)
         + plain(
-            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this one is for the "
-            "pictures of stress"
-            + (" and the other stiffnesses." if len(turned) < len(own) else ".")
+            f" {'comes' if len(turned) == 1 else 'come'} from a mesh of the meridian; this mesh is for the "
+            "stress pictures"
+            + (" and the other stiffnesses." if len(turned) < len(solved) else ".")
         )
     )
 
 
 def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:
-    said = (
+    text = (
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )
     if these[0]["kind"] == GUARANTEED:
-        said += plain("These bounds hold without exception. ")
+        text += plain("These bounds are proven. ")
     else:
-        said += plain("This is an estimate, not a guarantee. ")
+        text += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
-    said += plain(
-        f"The wanted tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+    text += plain(
+        f"The requested tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
     )
-    return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
+    return text + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 
 
 def _listed(symbols: Iterable[str]) -> Words:

@@ -57,11 +57,12 @@ def printable(
 def notice(count: int) -> dict[str, Any]:
     """The block that says so, as `payload_of` has it."""
     letters = "A letter" if count == 1 else f"{count} different letters"
-    said = (
-        f"{letters} of names or notes cannot be printed, as no font on this computer has them; "
-        "each is written by its code. report.html and the files have them."
+    text = (
+        f"{letters} in names or notes cannot be printed, because no font on this computer has "
+        f"{'it' if count == 1 else 'them'}; the code is printed instead. report.html and the files contain "
+        f"{'the letter' if count == 1 else 'the letters'}."
     )
-    spans = [{"style": "", "text": said, "target": ""}]
+    spans = [{"style": "", "text": text, "target": ""}]
     return {"kind": "callout", "tone": "amber", "heading": "", "text": spans, "items": []}
 
 

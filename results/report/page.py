@@ -70,9 +70,11 @@ def page_of(
     from markupsafe import Markup
 
     # sorted: they are drawn side by side, and come in the order in which they are ready
-    found: dict[str, dict[str, Any]] = {n: json.loads(v) for n, v in sorted((views or {}).items())}
-    script, style = _script() if found else "", as_css(REPORT_COLOURS) + _file(STYLE)
-    shown = {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()}
+    decoded: dict[str, dict[str, Any]] = {
+        n: json.loads(v) for n, v in sorted((views or {}).items())
+    }
+    script, style = _script() if decoded else "", as_css(REPORT_COLOURS) + _file(STYLE)
+    shown = {n: {k: v[k] for k in ("camera", "mark")} for n, v in decoded.items()}
     text = (
         _environment()
         .get_template(TEMPLATE)
@@ -80,11 +82,11 @@ def page_of(
             d=payload_of(document),
             pictures=pictures,
             attached=document.attached,
-            views=found,
+            views=decoded,
             shown={"scale": colour_scale(), "views": shown},
             script=Markup(script),
             css=Markup(style),
-            policy=_policy([script] if found else [], style),
+            policy=_policy([script] if decoded else [], style),
             ui=WORDS,
         )
     )

@@ -43,11 +43,11 @@ def _listed(attached: Sequence[Attachment]) -> Iterable[Block]:
 
 def _encoded(block: Any) -> dict[str, Any]:
     """A block's or span's fields; where a `Text` may stand, always a list of spans."""
-    found: dict[str, Any] = {"kind": type(block).__name__.lower()}
+    encoded: dict[str, Any] = {"kind": type(block).__name__.lower()}
     for f in fields(block):
         value = getattr(block, f.name)
-        found[f.name] = _texts(value) if "Text" in str(f.type) else _values(value)
-    return found
+        encoded[f.name] = _texts(value) if "Text" in str(f.type) else _values(value)
+    return encoded
 
 
 def _texts(value: Any) -> Any:

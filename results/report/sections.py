@@ -51,7 +51,7 @@ def run_document(content: ReportContent) -> Document:
     """The whole report."""
     roomy = _letters(content) <= ROOMY
     sections = (
-        (_summary(content), _asked(content), _answer(content)),
+        (_summary(content), _task(content), _answer(content)),
         (budget(content, roomy),),
         (whole_gear(content, roomy),),
         (_stress(content, roomy),),
@@ -101,8 +101,8 @@ def _summary(content: ReportContent) -> Iterable[Block]:
     yield Paragraph(totals_and_terms(content))
 
 
-def _asked(content: ReportContent) -> Iterable[Block]:
-    yield Heading("What was asked")
+def _task(content: ReportContent) -> Iterable[Block]:
+    yield Heading("The task")
     yield Paragraph(
         plain("Torsional stiffness, stress, and backlash at the output between ")
         + symbol("−T_L")
@@ -116,7 +116,7 @@ def _asked(content: ReportContent) -> Iterable[Block]:
 
 
 def _answer(content: ReportContent) -> Iterable[Block]:
-    yield Heading("The answer")
+    yield Heading("The results")
     rows = [
         (
             (bold(a["name"]) if i == 0 else worded(a["name"]))
@@ -135,9 +135,9 @@ def _answer(content: ReportContent) -> Iterable[Block]:
             Column("Bounds"),
         ),
         rows=tuple(rows),
-        caption=plain("Answers. Bounds of a stiffness are bounds of the discretisation error; ")
+        caption=plain("Results. The bounds of a stiffness limit the discretisation error; ")
         + ref("solver")
-        + plain(" says how they were found."),
+        + plain(" says how they were obtained."),
         target="answers",
     )  # fmt: skip
     if fatigue := limits.fatigue(content):
@@ -145,10 +145,10 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     if any(name.startswith("K_b_lobes") for name in content.stiffnesses):
         yield Paragraph(_which(content.design.solver.load_case))
     if count := len(content.warnings):
-        said = "warning" if count == 1 else f"{count} warnings"
+        warnings = "warning" if count == 1 else f"{count} warnings"
         yield Callout(
             "amber",
-            text=bold(f"Read the {said} in ")
+            text=bold(f"Read the {warnings} in ")
             + ref("warnings")
             + bold(" before using these figures."),
         )
@@ -164,7 +164,7 @@ def _which(load_case: str) -> Words:
         *plain("Which stiffness of the flexspline to use: the torque enters through the teeth at the two "
                "lobes, and the rim may lift off the wave generator, so "),
         *resting,
-        *plain(" is nearest to a mounted gear. The uniform case is the stiffest; use it to compare parts. "),
+        *plain(" is closest to a mounted gear. The uniform case is the stiffest; use it to compare parts. "),
         *free,
         *plain(" shows how much the wave generator carries. No case includes teeth, wave-generator bearing "
                f"and bolts. The backlash sum uses the case “{load_case}” (solver.load_case)."),
@@ -178,7 +178,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
         "Flexspline on the wave generator: the ellipse, magnified as stated in the picture, with its "
         "von Mises stress."
     )
-    found = [
+    pictures = [
         *shown(
             content,
             roomy,
@@ -190,18 +190,19 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
         *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
         *shown_charts(content, roomy, "stress"),
     ]
-    if found:
+    if pictures:
         yield Heading("Stress and deformation")
-        yield from found
+        yield from pictures
         yield Paragraph(
-            plain("Stresses are averaged at the nodes. Colours end at the peak that ")
+            plain(
+                "Stresses are averaged at the nodes. The colour scale ends at the peak stress of "
+            )
             + ref("answers")
             + plain(
-                " reports. Linear-elastic stress is singular at sharp edges, so no value is reported there; "
-                "the places left out are named in "
+                ". Linear-elastic stress is singular at sharp edges, so no value is reported there; "
             )
             + ref("limits")
-            + plain(".")
+            + plain(" lists the excluded places.")
         )
 
 

@@ -71,9 +71,9 @@ _SYMBOLS = re.compile(rf"({'|'.join(map(re.escape, sorted(_NAMES, reverse=True))
 def worded(text: str) -> Words:
     """The program's own words, in which T_L and the stiffnesses, as K_b,lobes, are symbols."""
     spans, at = [], 0
-    for found in _SYMBOLS.finditer(text):
-        spans += [Span("", text[at : found.start()]), Span("symbol", found.group())]
-        at = found.end()
+    for match in _SYMBOLS.finditer(text):
+        spans += [Span("", text[at : match.start()]), Span("symbol", match.group())]
+        at = match.end()
     return tuple(s for s in (*spans, Span("", text[at:])) if s.text)
 
 

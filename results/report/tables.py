@@ -41,8 +41,8 @@ def answers(content: ReportContent) -> list[PrintedRow]:
         entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         row = _row(entry, stiffness.K_Nm_per_rad, bounds)
-        said = filter(None, (entry.note, notes.get(entry.key)))
-        rows.append(row | {"note": "; ".join(said), "kind": bounds_kind(stiffness.guaranteed)})
+        remarks = filter(None, (entry.note, notes.get(entry.key)))
+        rows.append(row | {"note": "; ".join(remarks), "kind": bounds_kind(stiffness.guaranteed)})
     return rows + _stress_rows(content)
 
 
@@ -62,7 +62,7 @@ def solves(content: ReportContent) -> list[PrintedRow]:
     rows = []
     for name, s in content.stiffnesses.items():
         last = s.levels[-1]
-        asked = content.design.solver.tolerance_pct
+        tolerance_pct = content.design.solver.tolerance_pct
         half, check = 100 * s.half_width, last.K_check_Nm_per_rad
         rows.append(
             {
@@ -72,8 +72,8 @@ def solves(content: ReportContent) -> list[PrintedRow]:
                 "meshes": str(len(s.levels)),
                 "elements": quantity("solver.elements").text(last.elements),
                 "dofs": quantity("solver.dofs").text(last.dofs),
-                "half_width": f"± {beyond(half, asked)} %",
-                "wide": "yes" if half > asked else "",
+                "half_width": f"± {beyond(half, tolerance_pct)} %",
+                "wide": "yes" if half > tolerance_pct else "",
                 "kind": bounds_kind(s.guaranteed),
                 "residual": UNCHECKED if last.residual is None else with_power(last.residual),
                 "energy": UNCHECKED
@@ -141,17 +141,17 @@ def _stress_rows(content: ReportContent) -> list[PrintedRow]:
         if peak is not None:
             passed = [beside_figure(p) for p in limits_passed(content.design, {name: peak})]
             part, (x, y, z) = PART_OF[name], peak.at_mm
-            said = [f"{part}, r = {(x * x + y * y) ** 0.5:.2f} mm, z = {z:.2f} mm"]
+            remarks = [f"{part}, r = {(x * x + y * y) ** 0.5:.2f} mm, z = {z:.2f} mm"]
             if peak.at_excluded_border:
-                said.append(border_note(peak.exclusion_mm, peak.mises_at_twice_MPa))
+                remarks.append(border_note(peak.exclusion_mm, peak.mises_at_twice_MPa))
             if not (passed and peak.at_excluded_border):
-                said.append(limit_note(peak, content.design.part(part).material))
+                remarks.append(limit_note(peak, content.design.part(part).material))
             if entry is wave and content.half_seat_peak is not None:
                 half = entry.with_unit(content.half_seat_peak.mises_MPa)
-                said.append(f"seat as wide as the ring; {half} with a seat half as wide")
+                remarks.append(f"seat as wide as the ring; {half} with a seat half as wide")
             rows.append(
                 _row(entry, peak.mises_MPa, "")
-                | {"note": "; ".join(said), "alarm": "; ".join(passed)}
+                | {"note": "; ".join(remarks), "alarm": "; ".join(passed)}
                 | {
                     "tile": "; ".join(passed)
                     or (BORDER if peak.at_excluded_border else "von Mises")
@@ -209,5 +209,5 @@ def _material(m: Material) -> str:
     limit = f", fatigue limit {m.fatigue_limit_MPa:g} MPa" if m.fatigue_limit_MPa else ""
     density = f"{m.density_kg_per_m3:g} kg/m³"
     if not m.density_stated:
-        density += " (steel's, not stated)"
+        density += " (of steel, not stated)"
     return f"{_elastic(m)}{limit}, density {density}"

@@ -18,36 +18,36 @@ _FIRST = quantity("K1_Nm_per_rad")
 
 def totals_and_terms(content: ReportContent) -> Words:
     """The series stiffness, the backlash sum and, where it was found, K1 of the whole gear."""
-    said = (
+    text = (
         bold("Totals and terms. ")
         + symbol(_SERIES.symbol)
         + plain(
-            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} is of flexspline and shaft alone (1/"
+            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} includes only flexspline and shaft (1/"
         )
         + symbol(_SERIES.symbol)
         + worded(f" = 1/{content.sum_symbol} + 1/K_e); the backlash of ")
         + plain(
-            f"{_SUM.with_unit(content.backlash.total_arcsec)} adds both clearances to their wind-up ("
+            f"{_SUM.with_unit(content.backlash.total_arcsec)} is their wind-up plus both clearances ("
         )
         + ref("budget")
         + plain("). ")
     )
     curve = content.gear
     if curve is None:
-        return said + plain("Neither includes bolts, housing or friction.")
+        return text + plain("Neither includes bolts, housing or friction.")
     return (
-        said
+        text
         + symbol(_FIRST.symbol)
         + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
         + ref("gear")
         + plain(
-            ") has teeth, rim contact and bearing in series and no clearance, as a catalogue's has. "
+            ") also includes teeth, rim contact and bearing, but no clearance, as in catalogues. "
         )
         + _whole_twist(curve)
         + plain(
             "Lost motion includes the clearances"
-            + (", of which none is left free" if curve.free_angle_arcsec == 0 else "")
-            + ". Bolts, housing and friction are in none of these."
+            + (", but no free angle remains here" if curve.free_angle_arcsec == 0 else "")
+            + ". Bolts, housing and friction are not included."
         )
     )
 
@@ -57,4 +57,4 @@ def _whole_twist(curve: GearCurve) -> Words:
     if not curve.terms_arcsec:
         return ()
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"It twists by {total} between ± T_L. ")
+    return worded(f"The gear twists by {total} between ± T_L. ")

@@ -13,10 +13,10 @@ LIBRARIES = (
 
 def library_versions() -> dict[str, str]:
     """Python's version and those of the libraries that are installed; imports none of them."""
-    found = {"Python": platform.python_version()}
+    versions = {"Python": platform.python_version()}
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
             continue  # pypardiso does not exist on Arm
-    return found
+    return versions

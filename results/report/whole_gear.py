@@ -12,7 +12,6 @@ from flexspline.results.gear_terms import term_names
 from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantities_of, quantity
-from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
     Block,
@@ -32,14 +31,14 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield Heading("The whole gear", "gear")
     curve = content.gear
     if curve is None:
-        yield Callout("amber", text=bold("Not found: ") + plain(f"{content.gear_missing}."))
+        yield Callout("amber", text=bold("Not computed: ") + plain(f"{content.gear_missing}."))
         return
     K1, K2, K3 = (symbol(quantity(f"K{n}_Nm_per_rad").symbol) for n in (1, 2, 3))
     yield Paragraph(
         plain(
-            "The output under torque while the wave generator is locked: tooth pairs come into contact one "
-            "after another, the rim may lift off its bearing, races and balls deform elastically. Makers’ "
-            "catalogues give such a curve as three slopes, "
+            "A torque acts on the output while the wave generator is locked: tooth pairs come into contact "
+            "one after another, the rim may lift off its bearing, and races and balls deform elastically. "
+            "Catalogues give such a curve as three slopes: "
         )
         + K1
         + plain(" up to ")
@@ -62,7 +61,7 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Column("Unit"),
         ),
         rows=tuple(
-            _figure(entry, value)
+            (entry.name, symbol(entry.symbol), bold(entry.text(value)), entry.unit)
             for entry in quantities_of("gear")
             if (value := getattr(curve, entry.key)) is not None
         ),
@@ -78,13 +77,9 @@ def _torque(curve: GearCurve, key: str) -> Words:
     return symbol(entry.symbol) + plain(f" = {entry.with_unit(getattr(curve, key))}")
 
 
-def _figure(entry: Quantity, value: float) -> tuple[str | Words, ...]:
-    return entry.name, symbol(entry.symbol), bold(entry.text(value)), entry.unit
-
-
 def _shares(curve: GearCurve) -> Words:
-    each = ", ".join(f"{100 * v:.0f} % {part}" for part, v in curve.compliance_shares.items())
-    return plain(f"Of its compliance at rated torque: {each}.")
+    shares = ", ".join(f"{100 * v:.0f} % {part}" for part, v in curve.compliance_shares.items())
+    return plain(f"Shares of the compliance at rated torque: {shares}.")
 
 
 def _beside(total: Backlash, curve: GearCurve) -> Table:
@@ -93,13 +88,13 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
     load = "" if curve.terms_torque_Nm is None else f" = {curve.terms_torque_Nm:g} N·m"
     for term, name in term_names().items():
         in_sum = None if term == TIGHT else getattr(total, f"{term}_arcsec")
-        own = curve.terms_arcsec[term]
+        in_gear = curve.terms_arcsec[term]
         rows.append(
             (
                 name,
                 "–" if in_sum is None else grouped(in_sum, 1),
-                grouped(own, 1),
-                grouped(round(own, 1) - round(in_sum or 0.0, 1), 1),
+                grouped(in_gear, 1),
+                grouped(round(in_gear, 1) - round(in_sum or 0.0, 1), 1),
             )
         )
     return Table(
@@ -109,17 +104,19 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         ),
         rows=tuple(rows),
         caption="Backlash sum and whole gear compared. The whole gear’s flexspline wind-up includes "
-        "teeth and bearing. The angle of a clearance is the decrease of the free angle when the flanks’ "
-        "clearance is removed first, then the bearing’s. The gap without any clearance remains because "
-        "balls, race and rim deform elastically and the teeth do not reach full depth; the sum has no such "
-        "term.",
+        "teeth and bearing. The angle of a clearance is the decrease of the free angle when this clearance "
+        "is removed: first the flank clearance, then the bearing play. The gap without any clearance remains "
+        "because balls, race and rim deform elastically and the teeth do not reach full depth; the sum has "
+        "no such term.",
         strong=len(rows) - 1,
     )  # fmt: skip
 
 
 def _assumed(curve: GearCurve) -> Iterable[Block]:
-    each = "; ".join(f"{a.key} = {plain_number(a.value, 4)} ({a.why})" for a in curve.assumed)
-    yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
+    values = "; ".join(f"{a.key} = {plain_number(a.value, 4)} ({a.why})" for a in curve.assumed)
+    yield Paragraph(
+        bold("Assumed, because the design file does not state it: ") + plain(f"{values}.")
+    )
     if curve.warnings:
         yield Callout("amber", items=tuple(map(sentence, gear_warnings(curve))))
     if curve.notes:

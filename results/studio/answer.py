@@ -39,21 +39,21 @@ LINE_POINTS = 25
 """Of the torque–angle line: it is straight, its band bends."""
 ESTIMATED = "≈\u2009"
 """Before bounds that are no theorems."""
-FoundSoFar = Mapping[str, Any]
+ComputedFigures = Mapping[str, Any]
 Message = dict[str, Any]
 
 
-def message(design: Design, found: FoundSoFar) -> Message:
-    """All that can be said with the figures found so far; `found` by result.json key.
+def message(design: Design, computed: ComputedFigures) -> Message:
+    """All that can be said with the figures found so far; `computed` by result.json key.
 
     Raises
     ------
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    figures = dict(found)
+    figures = dict(computed)
     shown: Message = {}
-    K_b = found.get(f"{design.solver.K_b_in_sum}_Nm_per_rad")
-    K_e = found.get("K_e_Nm_per_rad")
+    K_b = computed.get(f"{design.solver.K_b_in_sum}_Nm_per_rad")
+    K_e = computed.get("K_e_Nm_per_rad")
     if K_b is not None and K_e is not None:
         figures["K_series_Nm_per_rad"] = series_stiffness(K_b, K_e)
         total = backlash(design, K_b, K_e)
@@ -64,8 +64,8 @@ def message(design: Design, found: FoundSoFar) -> Message:
             "line": _line(design, total, K_b, K_e),
             "beyond": list(load_beyond(limit, design)),
         }
-    if "gear" in found:
-        shown["gear"] = _gear(found["gear"])
+    if "gear" in computed:
+        shown["gear"] = _gear(computed["gear"])
     return {
         "stiffness": [_stiffness(name, figures, design) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
@@ -76,45 +76,41 @@ def message(design: Design, found: FoundSoFar) -> Message:
 
 def left_out(design: Design) -> tuple[str, ...]:
     """What the fast model does not see, in words; empty for bodies of revolution."""
-    found = []
+    omitted = []
     for part in design.parts:
         if part.bolts:
             known = " (K_b's bounds hold with them)" if part.name == "flexspline" else ""
-            found.append(f"{part.bolts.count} bolt holes of the {part.name}{known}")
+            omitted.append(f"{part.bolts.count} bolt holes of the {part.name}{known}")
     if design.part("shaft").keyway is not None:
-        found.append("the keyway")
-    return tuple(found)
+        omitted.append("the keyway")
+    return tuple(omitted)
 
 
 def agreement(design: Design) -> str:
     """How these figures stand to those of the command line."""
-    both = "; of both, K_e is too large (see the warnings)" if held_beyond_flange(design) else ""
+    both = "; in both, K_e is too large (see the warnings)" if held_beyond_flange(design) else ""
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
         but_for = joined(dict.fromkeys(words), "and")
-        return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds{both}"
+        return f"Equals `flexspline stiffness` except for {but_for}; K_b within its bounds{both}"
     if design.solver.model == "solid":
-        return f"Equals `flexspline stiffness`, there the solid model, within the bounds{both}"
+        return f"Equals `flexspline stiffness` (solid model) within the bounds{both}"
     return f"Equals `flexspline stiffness` to seven digits{both}"
 
 
 def design_warnings_shown(design: Design) -> list[str]:
     """The design's own, and that K_e is too large; without a solve, as a slider may move."""
-    found = list(warnings(design))
+    lines = list(warnings(design))
     if held_beyond_flange(design):
-        found.append(too_large_line(design, estimate=False))
-    return found
+        lines.append(too_large_line(design, estimate=False))
+    return lines
 
 
 def figure(key: str, value: float) -> Message:
     """A number and how it is printed; `decimals` serves differences of the same figure."""
-    entry = quantity(key)
-    text = entry.text(value)
-    return {
-        "key": key, "value": value, "text": text, "unit": entry.unit, "symbol": entry.symbol,
-        "name": entry.name, "short": entry.short_name, "decimals": len(text.partition(".")[2]),
-    }  # fmt: skip
+    text = quantity(key).text(value)
+    return _waiting(key) | {"value": value, "text": text, "decimals": len(text.partition(".")[2])}
 
 
 def without(name: str, design: Design) -> str:
@@ -126,13 +122,13 @@ def without(name: str, design: Design) -> str:
     left = [
         word for word, is_there in (("holes", shaft.bolts), ("keyway", shaft.keyway)) if is_there
     ]
-    said = [f"without {joined(left, 'and')}"] if left else []
+    remarks = [f"without {joined(left, 'and')}"] if left else []
     if held_beyond_flange(design):
-        said.append("too large")
-    return ", ".join(said)
+        remarks.append("too large")
+    return ", ".join(remarks)
 
 
-def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:
+def _stiffness(name: str, figures: ComputedFigures, design: Design) -> Message:
     key, bounds = f"{name}_Nm_per_rad", f"{name}_bounds_Nm_per_rad"
     if key not in figures:
         return _waiting(key)
@@ -152,7 +148,7 @@ def _stiffness(name: str, figures: FoundSoFar, design: Design) -> Message:
     return row
 
 
-def _peak(name: str, figures: FoundSoFar, design: Design) -> Message:
+def _peak(name: str, figures: ComputedFigures, design: Design) -> Message:
     key = f"{name}_mises_MPa"
     if key not in figures:
         return _waiting(key)
@@ -174,23 +170,24 @@ def _peak(name: str, figures: FoundSoFar, design: Design) -> Message:
     return row
 
 
-def _gear(found: FoundSoFar) -> Message:
+def _gear(gear: ComputedFigures) -> Message:
     """Figures, shares of the compliance, assumed keys of the design file; of the fast model the curve too."""
-    shares = found["compliance_shares"].items()
+    shares = gear["compliance_shares"].items()
     return {
-        "rows": [figure(key, found[key]) for key in GEAR_ROWS],
+        "rows": [figure(key, gear[key]) for key in GEAR_ROWS],
         "shares": [
             {"name": name, "value": value, "colour": colour}
             for (name, value), colour in zip(shares, PALETTE, strict=False)
         ],
-        "marks": [[mark.symbol, found[mark.key]] for mark in quantities_of("gear torque")],
-        "assumed": [f"{a['key']} = {a['value']:.4g}" for a in found["assumed"] if "." in a["key"]],
-        "warnings": found["warnings"],
-        "line": found.get("line"),
+        "marks": [[mark.symbol, gear[mark.key]] for mark in quantities_of("gear torque")],
+        "assumed": [f"{a['key']} = {a['value']:.4g}" for a in gear["assumed"] if "." in a["key"]],
+        "warnings": gear["warnings"],
+        "line": gear.get("line"),
     }
 
 
 def _waiting(key: str) -> Message:
+    """A figure that is still to come."""
     entry = quantity(key)
     return {
         "key": key, "symbol": entry.symbol, "name": entry.name, "short": entry.short_name,

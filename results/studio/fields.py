@@ -68,10 +68,10 @@ def form(design: Design) -> list[Tables]:
 
 
 def _at(tables: Tables, location: Location) -> Tables | None:
-    here: Any = tables
+    table: Any = tables
     for part in location:
-        here = here.get(part) if isinstance(here, dict) else None
-    return here
+        table = table.get(part) if isinstance(table, dict) else None
+    return table
 
 
 def assumed_values(design: Design) -> dict[str, float]:

@@ -85,7 +85,7 @@ class Guard:
             except ValueError:
                 return _refused(400, "the Host header is not an address")
             if is_loopback(self.host) and not is_loopback(name):
-                return _refused(403, "this server answers to the names of its own machine only")
+                return _refused(403, "this server accepts only the names of its own machine")
             origin = request.headers.get("Origin")
             if origin is not None and _netloc(origin) != request.host.lower():
                 return _refused(403, "requests from other sites are refused")
@@ -107,8 +107,8 @@ class Guard:
         self._ticket_uses += 1
         if self._ticket_uses == 2:
             tell(
-                "the address opened in the browser was used a second time and refused; if the page "
-                "did not open, another user was faster: stop, and start with --no-browser"
+                "the address opened in the browser was used a second time and refused; if the page did not "
+                "open, another user may have opened it: stop and start again with --no-browser"
             )
         return self._ticket_uses == 1
 

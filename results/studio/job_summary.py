@@ -63,6 +63,6 @@ def _gain(gain: Summary) -> str:
     before, after = figures_text(gain["rmse_before"]), figures_text(gain["rmse_after"])
     floor = figures_text(gain["noise_floor"])
     return (
-        f"On {gain['held_out']}, not used for fitting: {before} {gain['unit']} rms before, "
-        f"{after} with what was found; the noise of these readings is {floor}."
+        f"Error on {gain['held_out']}, not used for fitting: {before} {gain['unit']} rms before, "
+        f"{after} with the identified causes; the noise of these readings is {floor}."
     )

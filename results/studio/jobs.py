@@ -27,7 +27,7 @@ SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step"
 GRACE_S = 3.0
 """From the wish to stop (Ctrl-C) to the end by force."""
 FORCE = getattr(signal, "SIGKILL", signal.SIGTERM)
-"""What no process withstands; Windows has one way to end a process, and no Ctrl-C for others."""
+"""Ends any process; Windows has one way to end a process, and no Ctrl-C for others."""
 _DESIGN, _MEASURED, _OUT = "design.toml", "measured.csv", "out"
 
 

@@ -38,11 +38,11 @@ GEAR = "gear"
 CHORDS_PER_WALL = 40
 """Arcs of a shape without stress are drawn with chords no farther off than wall/40."""
 
-Found = dict[str, Any]
+Answer = dict[str, Any]
 """Figures by result.json key; "picture" holds bytes for the tab."""
 
 
-def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
+def answer(question: str, tables: Mapping[str, Any]) -> Answer | Fault:
     """The figures, or why there are none; only our own errors become a Fault."""
     try:
         return _QUESTIONS[question](design_from(tables))
@@ -52,38 +52,38 @@ def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
         return Fault("", str(fault))
 
 
-def _torsion(design: Design) -> Found:
+def _torsion(design: Design) -> Answer:
     K_b, K_e = torsion(design)
     return bounded_record("K_b", K_b) | bounded_record("K_e", K_e)
 
 
-def _rim(name: str) -> Callable[[Design], Found]:
+def _rim(name: str) -> Callable[[Design], Answer]:
     return lambda design: _bounded(name, rim(design, RIM[name]), rough=False)
 
 
-def _bounded(name: str, found: Stiffness, rough: bool) -> Found:
-    return bounded_record(name, found) | {f"{name}_rough": rough}
+def _bounded(name: str, stiffness: Stiffness, rough: bool) -> Answer:
+    return bounded_record(name, stiffness) | {f"{name}_rough": rough}
 
 
-def _gear(design: Design) -> Found:
+def _gear(design: Design) -> Answer:
     curve = gear(design)
     up = curve.torque_Nm.index(max(curve.torque_Nm)) + 1  # the other branches mirror the first
     line = {"torque_Nm": curve.torque_Nm[:up], "angle_arcsec": curve.angle_arcsec[:up]}
     return {"gear": {**gear_figures(curve), "line": line}}
 
 
-def _field(view: StressCase) -> Callable[[Design], Found]:
-    def ask(design: Design) -> Found:
+def _field(view: StressCase) -> Callable[[Design], Answer]:
+    def ask(design: Design) -> Answer:
         return _solved(view, field(revolved(design), view), rough=False)
 
     return ask
 
 
-def _first(design: Design) -> Found:
+def _first(design: Design) -> Answer:
     return _solved("wave_generator", first_field(revolved(design)), rough=True)
 
 
-def _solved(view: StressCase, solved: RevolvedField, rough: bool) -> Found:
+def _solved(view: StressCase, solved: RevolvedField, rough: bool) -> Answer:
     name = PEAK_OF[view]
     return {
         **peak_record(name, solved.peak),
@@ -92,15 +92,15 @@ def _solved(view: StressCase, solved: RevolvedField, rough: bool) -> Found:
     }
 
 
-def _profile(view: StressCase) -> Callable[[Design], Found]:
-    def ask(design: Design) -> Found:
+def _profile(view: StressCase) -> Callable[[Design], Answer]:
+    def ask(design: Design) -> Answer:
         chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
         return {"picture": profile_message(view, profile(revolved(design), view, chord))}
 
     return ask
 
 
-_QUESTIONS: dict[str, Callable[[Design], Found]] = {
+_QUESTIONS: dict[str, Callable[[Design], Answer]] = {
     "torsion": _torsion,
     GEAR: _gear,
     FIRST_STRESS: _first,

@@ -25,10 +25,10 @@ from flexspline.results.studio.server import Studio, application
 LARGEST_PORT = 65535
 """TCP has 16 bits for it."""
 _REASONS = {
-    errno.EADDRINUSE: "another program does; --port 0 takes any free port",
-    errno.EACCES: "ports below 1024 are the system's; --port 0 takes any free port",
-    errno.EADDRNOTAVAIL: "this machine has no such address; --host 127.0.0.1 is this machine alone",
-    socket.EAI_NONAME: "no such host; --host 127.0.0.1 is this machine alone",
+    errno.EADDRINUSE: "another program uses this port; --port 0 takes any free port",
+    errno.EACCES: "ports below 1024 are reserved for the system; --port 0 takes any free port",
+    errno.EADDRNOTAVAIL: "this machine has no such address; --host 127.0.0.1 is this machine only",
+    socket.EAI_NONAME: "no such host; --host 127.0.0.1 is this machine only",
 }
 
 

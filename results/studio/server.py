@@ -73,21 +73,21 @@ async def _workers(app: web.Application) -> AsyncIterator[None]:
 
 def _page() -> dict[str, tuple[bytes, str]]:
     """Every file of the page by name, read once: a request picks from these and reads no disk."""
-    found = {"colours.css": (as_css(STUDIO_COLOURS).encode(), "text/css")}
+    page_files = {"colours.css": (as_css(STUDIO_COLOURS).encode(), "text/css")}
     shared = files("flexspline.results.page_3d")
     for folder in (files("flexspline.results.studio") / "page", shared, shared / "vendor"):
         for entry in folder.iterdir():
             kind = _TYPES.get(entry.name.rpartition(".")[2])
             if kind and entry.is_file():
-                found[entry.name] = (entry.read_bytes(), kind)
-    return found
+                page_files[entry.name] = (entry.read_bytes(), kind)
+    return page_files
 
 
 async def _file(request: web.Request) -> web.Response:
-    found = request.app[STUDIO].page.get(request.match_info.get("name", "index.html"))
-    if found is None:
+    page_file = request.app[STUDIO].page.get(request.match_info.get("name", "index.html"))
+    if page_file is None:
         raise web.HTTPNotFound
-    body, kind = found
+    body, kind = page_file
     return web.Response(body=body, content_type=kind, charset="utf-8")
 
 

@@ -26,15 +26,15 @@ def _chains(rim: np.ndarray) -> list[np.ndarray]:
     after = dict(rim.tolist())
     ends = set(after.values())
     starts = [node for node in after if node not in ends]
-    found = []
+    chains = []
     while after:
         node = starts.pop() if starts else next(iter(after))
         chain = [node]
         while node in after:
             node = after.pop(node)
             chain.append(node)
-        found.append(np.array(chain))
-    return found
+        chains.append(np.array(chain))
+    return chains
 
 
 def _kept(seen: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.progress import Progress
-from flexspline.results.export import write_step_files
+from flexspline.results.export import write_cad
 from flexspline.results.job import answered, tell
 
 
@@ -15,7 +15,7 @@ def main() -> None:
     """Two arguments: the design file and the folder."""
     path, folder = map(Path, sys.argv[1:])
     with answered(path):
-        write_step_files(load_design(path), folder, Progress(tell))
+        write_cad(load_design(path), folder, Progress(tell))
 
 
 if __name__ == "__main__":

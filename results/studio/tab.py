@@ -62,7 +62,7 @@ class WantedDesign:
     design: Design
     tables: Mapping[str, Any]
     view: str
-    found: dict[str, Any] = field(default_factory=dict)
+    figures: dict[str, Any] = field(default_factory=dict)
     begun: asyncio.Event = field(default_factory=asyncio.Event)
 
 
@@ -88,15 +88,15 @@ class Tab:
             self._lanes.append(asyncio.create_task(lane))
 
     async def close(self) -> None:
-        """Stop the lanes; a question already asked is answered to nobody."""
+        """Stop the lanes; the answer to a running question is dropped."""
         for lane in self._lanes:
             lane.cancel()
         await asyncio.gather(*self._lanes, return_exceptions=True)
 
     async def want(self, number: int, tables: Mapping[str, Any], view: str) -> None:
-        """Set the lanes on a design, or refuse it with its key and reason.
+        """Give the lanes a design, or refuse it with its key and reason.
 
-        After a refusal the lanes go on with the design before, which the page still shows.
+        After a refusal the lanes continue with the previous design, which the page still shows.
         """
         try:
             design = received(tables)
@@ -146,27 +146,27 @@ class Tab:
                     await wanted.begun.wait()
                     if self._wanted is not wanted:
                         break
-                found = await worker.ask(question, wanted.tables)
+                answer = await worker.ask(question, wanted.tables)
                 late = self._wanted is not wanted
-                if late and (isinstance(found, Fault) or question.startswith("profile")):
+                if late and (isinstance(answer, Fault) or question.startswith("profile")):
                     break
                 # the exact one may be there
-                if question != FIRST_STRESS or ROUGH not in wanted.found:
-                    await self._tell(wanted, question, found)
+                if question != FIRST_STRESS or ROUGH not in wanted.figures:
+                    await self._tell(wanted, question, answer)
                 if question == FIRST_LOBES:
                     wanted.begun.set()
                 if late:  # told all the same: while a slider moves, every answer comes late
                     break
 
-    async def _tell(self, wanted: WantedDesign, question: str, found: Any) -> None:
-        if isinstance(found, Fault):
+    async def _tell(self, wanted: WantedDesign, question: str, answer: Any) -> None:
+        if isinstance(answer, Fault):
             await self._send({"is": "failed", "number": wanted.number, "question": question,
-                              "key": found.key, "text": found.message})  # fmt: skip
+                              "key": answer.key, "text": answer.message})  # fmt: skip
             return
-        picture = found.pop("picture", None)
-        if found:
-            wanted.found |= found
-            await self._send({"number": wanted.number, "done": question, **_said(wanted)})
+        picture = answer.pop("picture", None)
+        if answer:
+            wanted.figures |= answer
+            await self._send({"number": wanted.number, "done": question, **_message(wanted)})
         if picture is not None:
             if question == FIRST_STRESS:  # to draw it takes a browser longer than all first figures
                 await wanted.begun.wait()
@@ -175,9 +175,9 @@ class Tab:
             await self._send(picture)
 
 
-def _said(wanted: WantedDesign) -> dict[str, Any]:
+def _message(wanted: WantedDesign) -> dict[str, Any]:
     try:
-        return {"is": "answer", **message(wanted.design, wanted.found)}
+        return {"is": "answer", **message(wanted.design, wanted.figures)}
     except BearingPlayDomainError as fault:
         return {"is": "fault", "key": "bearing.radial_clearance_um", "text": str(fault)}
 

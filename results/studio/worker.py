@@ -35,7 +35,7 @@ ENDED = Fault("", "the process of the fast model ended; move a slider to try aga
 class Worker:
     """One process; questions queue in the order in which they are asked.
 
-    A question during which it was killed, as by a system without memory left, is asked once more.
+    If the process is killed during a question, for example for lack of memory, the question is asked again.
 
     `niceness` lowers its priority, so that a slow question does not slow the quick ones.
     """
@@ -43,7 +43,7 @@ class Worker:
     def __init__(self, name: str, niceness: int = 0) -> None:
         self.name, self.niceness = name, niceness
         self._turn = asyncio.Lock()
-        self._asked: set[asyncio.Task[Any]] = set()
+        self._tasks: set[asyncio.Task[Any]] = set()
         self._process: BaseProcess | None = None
         self._pipe: Connection | None = None
 
@@ -74,21 +74,21 @@ class Worker:
     async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
         """The answer to a question of `results.studio.questions`, or a Fault.
 
-        Who stops waiting before the turn leaves the queue; whose turn has come leaves the question to
-        end by itself: the next one must not get its answer.
+        A caller that is cancelled before its turn leaves the queue. A question that has begun is not
+        cancelled: the next one would get its answer.
         """
         await self._turn.acquire()
-        asked = asyncio.create_task(self._answered(question, tables))
-        self._asked.add(asked)
-        asked.add_done_callback(self._asked.discard)
-        asked.add_done_callback(lambda _: self._turn.release())
-        return await asyncio.shield(asked)
+        task = asyncio.create_task(self._answered(question, tables))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(lambda _: self._turn.release())
+        return await asyncio.shield(task)
 
     async def _answered(self, question: str, tables: Mapping[str, Any]) -> Any:
-        found = await self._answered_once(question, tables)
-        if found is ENDED and self._was_killed():  # nobody would ask for this figure again
+        answer = await self._answered_once(question, tables)
+        if answer is ENDED and self._was_killed():  # nobody would ask for this figure again
             return await self._answered_once(question, tables)
-        return found
+        return answer
 
     def _was_killed(self) -> bool:
         """Whether the process has ended, but not by `stop`."""

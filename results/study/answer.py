@@ -30,7 +30,7 @@ from flexspline.results.study.report import write_study_reports
 from flexspline.results.study.tables import table_of, write_csv, write_parquet
 from flexspline.results.study.why import unfollowed
 
-NO_PARQUET = 'no study.parquet beside study.csv: pip install "flexspline[parquet]" for that'
+NO_PARQUET = 'study.parquet is not written; to get it: pip install "flexspline[parquet]"'
 
 
 def evaluated(study: Study, folder: Path) -> StudyResult:
@@ -42,9 +42,9 @@ def evaluated(study: Study, folder: Path) -> StudyResult:
         tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")
     store = trial_store_of(study, folder)
     if keys := unfollowed(study):
-        tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
+        tell(f"warning: the fast model ignores {keys}; run.verify solves them")
     if kept := len(within(store.rows(), size)):
-        tell(f"{kept} designs are finished already")
+        tell(f"{kept} designs are already finished")
     return whole_study(study, store, StudyListener(Watch(study), tell))
 
 

@@ -72,7 +72,7 @@ def best_figure(result: StudyResult) -> Figure:
     axes.set_xlabel("z in mm")
     figure.text(
         LEFT_IN / WIDE_IN, 0.12 / high,
-        f"dashed: the design the study began with; a, b: enlarged {times:.1f} times",
+        f"dashed: the start design; a, b: enlarged {times:.1f} times",
         color=MUTED, fontsize=9.5,
     )  # fmt: skip
     return figure

@@ -32,9 +32,9 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.study.failures import contradiction, nothing_built
         from flexspline.results.study.record import words
 
-        asked, attached = _read(file)
+        task, attached = _read(file)
         folder = folder_of(file, out, STUDY, shared=True)
-        result = evaluated(asked, folder)
+        result = evaluated(task, folder)
         record = study_answer(result, folder, attached)
         show(as_json(record) if json else words(result, record), json)
         if failed := contradiction(result) or nothing_built(result):
@@ -48,9 +48,9 @@ def _read(file: Path) -> tuple[Study, tuple[Attachment, ...]]:
     from flexspline.results.report.attached import Attachment
 
     raw = read_raw(file, "study")
-    asked = study_from(tables_from(raw, file, "study"), file.parent, file.stem)
-    base = file.parent / asked.file.design
-    return asked, (
+    loaded = study_from(tables_from(raw, file, "study"), file.parent, file.stem)
+    base = file.parent / loaded.file.design
+    return loaded, (
         Attachment(file.name, raw, "Study file"),
         Attachment(base.name, read_raw(base), "Design file"),
     )
@@ -67,7 +67,7 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
 
         gear, folder = load_design(design), folder_of(design, out, (SENSITIVITY,))
         slopes = sensitivities(gear, tell)
-        said = record(gear, slopes)
-        tell_all(said["warnings"])
-        write_sensitivity(folder, said)
-        show(as_json(said) if json else "\n".join(lines(gear, slopes)), json)
+        content = record(gear, slopes)
+        tell_all(content["warnings"])
+        write_sensitivity(folder, content)
+        show(as_json(content) if json else "\n".join(lines(gear, slopes)), json)

@@ -32,21 +32,21 @@ def design_table(result: StudyResult) -> Iterable[Block]:
     breaks = start_breaks(result)
     first = "start (not allowed)" if breaks else "start"
     heads = (*(first for _ in begun), *(_head(result, r) for r in chosen))
-    yield Heading("The best designs" if result.study.file.objective else "The designs built")
+    yield Heading("The best designs" if result.study.file.objective else "The built designs")
     yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
     if marked_figures(result):
         yield Paragraph(f"{MARK} {BORDER}: {MEANING}.")
     if begun:
-        told = "start: the design that the study began with, solved in the same way"
-        yield Paragraph(f"{told}; it {breaks}." if breaks else f"{told}.")
+        remark = "start: the design of the study file before any change, solved in the same way"
+        yield Paragraph(f"{remark}; it {breaks}." if breaks else f"{remark}.")
 
 
 def marked_figures(result: StudyResult) -> set[str]:
     """Figures that have a MARK in the table."""
     chosen = _chosen(result)
     begun = () if result.start is None or not chosen else (result.start.figures,)
-    each = (*begun, *(r.outcome.figures for r in chosen))
-    return {k for k in _figures(result, chosen) if any(k in f and at_border(k, f) for f in each)}
+    listed = (*begun, *(r.outcome.figures for r in chosen))
+    return {k for k in _figures(result, chosen) if any(k in f and at_border(k, f) for f in listed)}
 
 
 def _chosen(result: StudyResult) -> tuple[Row, ...]:

@@ -20,7 +20,7 @@ COUNTED_DESIGNS = 10_000
 """Of which it is counted who has a warning: a design is read again in 0.12 ms, so 1.2 s; of more, none."""
 WHOLE_FACE = "K_e, the shaft's whole first face held"
 """The kind of that warning; its line takes two solves, so it is made for a design that is told of alone."""
-FIRST = "the design that the study begins with"
+FIRST = "start design"
 
 
 @dataclass(frozen=True)
@@ -39,21 +39,21 @@ def design_warnings(result: StudyResult) -> list[str]:
     of_best = [] if best is None else _of_row(result, best)
     kinds = {warning.kind for warning in of_best}
     begun = result.study.design
-    told = [(f"design {best.slot}", result.design_of(best), w) for w in of_best] if best else []
-    told += [(FIRST, begun, warning) for warning in first if warning.kind not in kinds]
-    count = _counts(result) if told else None
-    said = [
+    numbered = [(f"design {best.slot}", result.design_of(best), w) for w in of_best] if best else []
+    numbered += [(FIRST, begun, warning) for warning in first if warning.kind not in kinds]
+    count = _counts(result) if numbered else None
+    lines = [
         f"{name}{_in_how_many(count, w.kind, result)}: {w.line or too_large_line(design)}"
-        for name, design, w in told
+        for name, design, w in numbered
         if w.kind != WHOLE_FACE or is_too_large(design)
     ]
     known = {*first, *of_best}
     if more := [str(row.slot) for row in others if not known.issuperset(_of_row(result, row))]:
-        said.append(
+        lines.append(
             f"other listed designs with warnings: {', '.join(more)}; to read them, put a design's row of "
             "study.csv into a design file and run flexspline run on it"
         )
-    return said
+    return lines
 
 
 def _listed(result: StudyResult) -> tuple[Row, ...]:
@@ -62,8 +62,12 @@ def _listed(result: StudyResult) -> tuple[Row, ...]:
 
 def _of_design(design: Design) -> list[_Warning]:
     """Of its dimensions; the cure behind a warning, which not every design has, is no part of the kind."""
-    found = [_Warning(line, without_numbers(line.partition("; ")[0])) for line in warnings(design)]
-    return [*found, _Warning("", WHOLE_FACE)] if held_beyond_flange(design) else found
+    of_dimensions = [
+        _Warning(line, without_numbers(line.partition("; ")[0])) for line in warnings(design)
+    ]
+    return (
+        [*of_dimensions, _Warning("", WHOLE_FACE)] if held_beyond_flange(design) else of_dimensions
+    )
 
 
 def _of_row(result: StudyResult, row: Row) -> list[_Warning]:
@@ -77,8 +81,8 @@ def _counts(result: StudyResult) -> Counter[str] | None:
     """In how many of the designs built each kind of warning stands; None of too many designs."""
     if not 1 < len(result.built) <= COUNTED_DESIGNS:
         return None
-    each = ({warning.kind for warning in _of_row(result, row)} for row in result.built)
-    return Counter(chain.from_iterable(each))
+    kinds = ({warning.kind for warning in _of_row(result, row)} for row in result.built)
+    return Counter(chain.from_iterable(kinds))
 
 
 def _in_how_many(count: Counter[str] | None, kind: str, result: StudyResult) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 
-TOLD = 8
+LISTED_REASONS = 8
 """Causes that a report or the terminal lists, the commonest first."""
 _NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
 
@@ -32,7 +32,7 @@ class FailureReason:
     fault: str
 
     @property
-    def said(self) -> str:
+    def example_words(self) -> str:
         """The example in words, beside the cause's name."""
         design, key = f"design {self.example.slot}", f"{self.name} = "
         if self.fault.startswith(key):
@@ -42,14 +42,15 @@ class FailureReason:
 
 def causes(result: StudyResult) -> list[FailureReason]:
     """Of all missing figures, the commonest first."""
-    found: dict[str, dict[int, tuple[Row, str]]] = {}
+    by_cause: dict[str, dict[int, tuple[Row, str]]] = {}
     for row in result.rows:
         for fault in row.outcome.faults:
-            found.setdefault(_cause(fault), {}).setdefault(row.slot, (row, fault))
-    told = [
-        FailureReason(name, len(each), *next(iter(each.values()))) for name, each in found.items()
+            by_cause.setdefault(_cause(fault), {}).setdefault(row.slot, (row, fault))
+    reasons = [
+        FailureReason(name, len(designs), *next(iter(designs.values())))
+        for name, designs in by_cause.items()
     ]
-    return sorted(told, key=lambda cause: -cause.designs)
+    return sorted(reasons, key=lambda cause: -cause.designs)
 
 
 def _cause(fault: str) -> str:
@@ -60,35 +61,35 @@ def _cause(fault: str) -> str:
     return without_numbers(fault)
 
 
-def without_numbers(said: str) -> str:
+def without_numbers(text: str) -> str:
     """What two designs have in common where they differ in their numbers alone."""
-    return _NUMBER.sub("…", said)
+    return _NUMBER.sub("…", text)
 
 
 def failure_lines(result: StudyResult) -> Iterator[str]:
     """For the terminal."""
-    found = causes(result)
-    if not found:
+    reasons = causes(result)
+    if not reasons:
         return
     count = sum(bool(row.outcome.faults) for row in result.rows)
     yield (
-        f"{count} of {len(result.rows)} designs could not be built, or not be solved in full, by cause (a "
+        f"{count} of {len(result.rows)} designs could not be built or not be solved completely; causes (a "
         "design may have several):"
     )
-    for cause in found[:TOLD]:
-        yield f"  {cause.designs} × {cause.name}: {cause.said}"
-    if more := untold(found):
+    for cause in reasons[:LISTED_REASONS]:
+        yield f"  {cause.designs} × {cause.name}: {cause.example_words}"
+    if more := further_reasons(reasons):
         yield f"  {more}"
 
 
 def contradiction(result: StudyResult) -> str:
     """Where two models of a design contradict each other: how many such designs, and the first; else ""."""
-    found = {r.slot: r.outcome.reason for r in result.rows if r.outcome.contradicted}
-    found |= {v.slot: v.reason for v in result.verified if v.contradicted}
-    if not found:
+    contradicted = {r.slot: r.outcome.reason for r in result.rows if r.outcome.contradicted}
+    contradicted |= {v.slot: v.reason for v in result.verified if v.contradicted}
+    if not contradicted:
         return ""
-    slot, reason = next(iter(found.items()))
-    count = f"{len(found)} of {len(result.rows)} designs"
+    slot, reason = next(iter(contradicted.items()))
+    count = f"{len(contradicted)} of {len(result.rows)} designs"
     return f"two models contradict each other in {count}; design {slot}: {reason}"
 
 
@@ -96,16 +97,19 @@ def nothing_built(result: StudyResult) -> str:
     """Where no design has the figures asked for: the most frequent cause; "" where one has."""
     if result.built or not result.rows:
         return ""
-    told = f"none of {len(result.rows)} designs could be built and solved"
-    found = causes(result)
-    if not found:
-        return told
-    return f"{told}; most frequent cause ({found[0].designs} ×): {found[0].name}: {found[0].said}"
+    sentence = f"none of {len(result.rows)} designs could be built and solved"
+    reasons = causes(result)
+    if not reasons:
+        return sentence
+    first = reasons[0]
+    return (
+        f"{sentence}; most frequent cause ({first.designs} ×): {first.name}: {first.example_words}"
+    )
 
 
-def untold(found: list[FailureReason]) -> str:
+def further_reasons(reasons: list[FailureReason]) -> str:
     """Of causes beyond those that are listed."""
-    left = len(found) - TOLD
+    left = len(reasons) - LISTED_REASONS
     if left <= 0:
         return ""
     return f"and {left} more cause{'s' * (left > 1)} (column reason of study.csv)"

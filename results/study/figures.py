@@ -80,7 +80,7 @@ def write_pareto(path: Path, result: StudyResult) -> None:
         if out:
             axes.scatter(
                 _values(out, first), _values(out, second), s=22, facecolors="none",
-                edgecolors=MUTED, linewidths=0.8, label="against a constraint",
+                edgecolors=MUTED, linewidths=0.8, label="breaks a constraint",
             )  # fmt: skip
         x, y = _values(result.feasible, first), _values(result.feasible, second)
         colour = _values(result.feasible, more[0]) if more else PALETTE[1]
@@ -163,7 +163,7 @@ def write_parallel(path: Path, result: StudyResult) -> None:
             0.08, 0.955,
             f"{'red: the best; ' if best else ''}colour: {first} from low (dark) to high (bright)"
             f"{'; grey: not allowed' if off.any() else ''}"
-            f"{'; bar: what a constraint allows' if limits else ''}{more}",
+            f"{'; bar: allowed by a constraint' if limits else ''}{more}",
             fontsize=9.5, color=INK,
         )  # fmt: skip
         save_png(figure, path)

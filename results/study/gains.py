@@ -24,14 +24,14 @@ def gains_shown(s: Scatter) -> dict[tuple[str, float], float]:
     An input that scatters less cannot buy less: gains in the wrong order are the sampling's, and each group
     of them is shown as its mean (isotonic regression). The record has them as sampled.
     """
-    found: dict[tuple[str, float], float] = {}
+    shown: dict[tuple[str, float], float] = {}
     for key, gains in _by_input(s).items():
         rising = isotonic_regression([gain for _, gain in gains]).x
-        found |= {
+        shown |= {
             (key, factor): max(0.0, float(one))
             for (factor, _), one in zip(gains, rising, strict=True)
         }
-    return found
+    return shown
 
 
 def least_gain(s: Scatter) -> float:
@@ -53,7 +53,7 @@ def gain_text(gain: float, least: float) -> str:
 
 def _by_input(s: Scatter) -> dict[str, list[tuple[float, float]]]:
     """Factors and gains as sampled, from the widest tolerance to none, by input."""
-    found: dict[str, list[tuple[float, float]]] = {}
-    for one in sorted(s.tightened, key=lambda each: -each.factor):
-        found.setdefault(one.key, []).append((one.factor, one.bought))
-    return found
+    by_input: dict[str, list[tuple[float, float]]] = {}
+    for one in sorted(s.tightened, key=lambda tightened: -tightened.factor):
+        by_input.setdefault(one.key, []).append((one.factor, one.bought))
+    return by_input

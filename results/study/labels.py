@@ -53,8 +53,8 @@ def beyond(key: str, figures: Mapping[str, float], ends: Iterable[float | None])
     return _marked(f"{exact} {q.unit}".rstrip(), key, figures)
 
 
-def _marked(said: str, key: str, figures: Mapping[str, float]) -> str:
-    return f"{said} ({BORDER})" if at_border(key, figures) else said
+def _marked(text: str, key: str, figures: Mapping[str, float]) -> str:
+    return f"{text} ({BORDER})" if at_border(key, figures) else text
 
 
 def at_border(key: str, figures: Mapping[str, float]) -> bool:
@@ -64,15 +64,15 @@ def at_border(key: str, figures: Mapping[str, float]) -> bool:
 
 def published(figures: Mapping[str, float]) -> dict[str, Any]:
     """A row's figures as result.json has them: what bounds are in a word, marks as true or false."""
-    found: dict[str, Any] = {}
+    columns: dict[str, Any] = {}
     for key, value in figures.items():
         if key.endswith(GUARANTEED):
-            found[f"{key.removesuffix(GUARANTEED)}_bounds_kind"] = bounds_kind(bool(value))
+            columns[f"{key.removesuffix(GUARANTEED)}_bounds_kind"] = bounds_kind(bool(value))
         elif key.endswith(AT_BORDER):
-            found[key] = bool(value)
+            columns[key] = bool(value)
         else:
-            found[key] = value
-    return found
+            columns[key] = value
+    return columns
 
 
 def _design_key(key: str) -> Quantity:

@@ -33,23 +33,27 @@ PEAKS = tuple(f"{name}_mises_MPa" for name in (*PART_OF, ON_HALF_SEAT))
 
 def notes(result: StudyResult, of_designs: Sequence[str] = ()) -> list[str]:
     """Sentences of the section "Scope and limits"; `of_designs`: warnings of the first and the best."""
-    said = [
+    sentences = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; bounds "
         f"of K are at most {100 * STUDY_TORSION_WIDTH:g} % apart, for lobes "
         f"{100 * STUDY_LOBE_WIDTH:g} %.",
         *_holes(result),
         _mass(result.study.design),
     ]
-    said += map(sentence, unsettled(result))
-    said += map(sentence, unmoved(result))
-    said += _borders(result)
-    said += _whole_gear(result)
-    said += map(sentence, of_designs)
+    sentences += map(sentence, unsettled(result))
+    sentences += map(sentence, unmoved(result))
+    sentences += _borders(result)
+    sentences += _whole_gear(result)
+    sentences += map(sentence, of_designs)
     if not result.verified:
-        asked = result.study.file.run.verify
-        why = f"no design meets every constraint; {asked} requested" if asked else "run.verify = 0"
-        said.append(f"No design was solved again with the solid model ({why}).")
-    return said
+        requested = result.study.file.run.verify
+        why = (
+            f"no design meets every constraint; {requested} requested"
+            if requested
+            else "run.verify = 0"
+        )
+        sentences.append(f"No design was solved again with the solid model ({why}).")
+    return sentences
 
 
 def _borders(result: StudyResult) -> Iterable[str]:
@@ -79,25 +83,25 @@ def border_warnings(result: StudyResult) -> Iterable[str]:
 
 def _advice(result: StudyResult, key: str) -> str:
     """How many keep to a constraint by such a peak alone, and which figure to ask for in its place."""
-    said, limit = "", result.study.file.constraint.get(key)
+    text, limit = "", result.study.file.constraint.get(key)
     if limit is not None and limit.max is not None:
         kept = [
             r.outcome.figures for r in result.built if limit.excess(r.outcome.figures[key]) <= 0
         ]
         if count := sum(at_border(key, figures) for figures in kept):
-            said = f"; {len(kept)} designs meet this constraint, {count} of them by such a figure"
+            text = f"; {len(kept)} designs meet this constraint, {count} of them with such a value"
     better = f"{ON_HALF_SEAT}_mises_MPa"
     if key == f"{ON_ELLIPSE}_mises_MPa" and _used(result, key) and not _used(result, better):
-        said += f"; use {better} instead, on a seat half as wide as the ring"
-    return said
+        text += f"; use {better} instead, on a seat half as wide as the ring"
+    return text
 
 
 def _used(result: StudyResult, key: str) -> str:
     """Whether a figure is an objective or a constraint of the study; "" for neither."""
     file = result.study.file
     roles = (("an objective", [*file.objective]), ("a constraint", [*file.constraint]))
-    said = joined((role for role, keys in roles if key in keys), "and")
-    return f"{said} of this study" if said else ""
+    played = joined((role for role, keys in roles if key in keys), "and")
+    return f"{played} of this study" if played else ""
 
 
 def unsettled(result: StudyResult) -> Iterable[str]:
@@ -107,14 +111,14 @@ def unsettled(result: StudyResult) -> Iterable[str]:
     last = (1 - LATE_SHARE) * len(result.rows)
     for key, sense in result.study.file.objective.items():
         sign = 1.0 if sense == "minimize" else -1.0
-        found = [(r.slot, sign * r.outcome.figures[key]) for r in result.feasible]
-        early = min((value for slot, value in found if slot < last), default=inf)
-        best = min((value for _, value in found), default=inf)
+        values = [(r.slot, sign * r.outcome.figures[key]) for r in result.feasible]
+        early = min((value for slot, value in values if slot < last), default=inf)
+        best = min((value for _, value in values), default=inf)
         gain = (early - best) / max(abs(best), ABOVE_ZERO) if early < inf else inf
         if best < inf and gain > LEAST_MOVE:
-            moved = "was first found" if gain == inf else f"still got {percent(gain)} better"
+            moved = "was first found" if gain == inf else f"still improved by {percent(gain)}"
             yield (
-                f"the search has not settled: the best “{entry(key).name}” {moved} in the last quarter of "
+                f"the search has not converged: the best “{entry(key).name}” {moved} in the last quarter of "
                 f"the {len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
             )
 
@@ -125,8 +129,8 @@ def unmoved(result: StudyResult) -> Iterable[str]:
         values = {r.outcome.figures[key] for r in result.built if key in r.outcome.figures}
         if len(values) == 1 and len(result.built) > 1:
             yield (
-                f"“{entry(key).name}” is the same in all {len(result.built)} designs: the model does not "
-                "depend on what is varied, so no design is the best"
+                f"“{entry(key).name}” is the same in all {len(result.built)} designs: it does not depend on "
+                "the varied keys, so no design is the best"
             )
 
 
@@ -164,14 +168,16 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
 
 def _mass(design: Design) -> str:
     """Which density weighs the parts, and who says so."""
-    said = []
+    densities = []
     for part in PART_NAMES:
         material = design.part(part).material
-        source = "as stated" if material.density_stated else "steel's, since the file states none"
-        said.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")
-    if said[0] == said[1]:
-        return f"Mass at {said[0]}."
-    return f"Mass of the flexspline at {said[0]}, of the shaft at {said[1]}."
+        source = (
+            "as stated" if material.density_stated else "of steel, because the file states none"
+        )
+        densities.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")
+    if densities[0] == densities[1]:
+        return f"Mass at {densities[0]}."
+    return f"Mass of the flexspline at {densities[0]}, of the shaft at {densities[1]}."
 
 
 def _holes(result: StudyResult) -> Iterable[str]:
@@ -187,7 +193,7 @@ def _holes(result: StudyResult) -> Iterable[str]:
     if pierced(design):
         yield from _shaft_holes(result)
     if keys := unfollowed(result.study):
-        yield f"{keys}: the fast model ignores these; the mass includes them, and run.verify solves them."
+        yield f"The fast model ignores {keys}; the mass includes them, and run.verify solves them."
 
 
 def wide_bounds(result: StudyResult) -> Iterable[str]:
@@ -219,8 +225,7 @@ def _shaft_holes(result: StudyResult) -> Iterable[str]:
     share = f" and by {100 * HOLE_EFFECT_DRIFT:g} % of the correction" if moved else ""
     ends = list(dict.fromkeys(percent_change(f - 1) for f in (max(factors), min(factors))))
     yield (
-        f"Holes and keyway change K_e by {' to '.join(ends)}: the same share of the flange's and the "
-        "keyway's own compliance as in the design that the study began with (one solid solve). Bounds of "
-        "K_e are widened "
-        f"by the uncertainty of both solves{share}, and are estimates."
+        f"Holes and keyway change K_e by {' to '.join(ends)}. Their effect is taken as the same share of the "
+        "compliance of flange and keyway as in the start design (one solid solve). The bounds of K_e are "
+        f"widened by the uncertainty of both solves{share}; they are estimates."
     )

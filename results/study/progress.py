@@ -34,7 +34,7 @@ class Watch:
         text = line(self.study, progress)
         end = "\n" if finished or not terminal else ""
         start = "\r\x1b[K" if terminal else ""
-        with suppress(OSError):  # whoever listened has gone: no reason to stop
+        with suppress(OSError):  # the reader has gone: no reason to stop
             print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
 
 

@@ -20,12 +20,14 @@ def question(study: Study) -> Iterable[Block]:
     """A table of the study file's own words."""
     file = study.file
     lines = [("varied", entry(k).name, _span(k, span)) for k, span in file.vary.items()]
-    lines += [("follows", entry(k).name, _link(k, link)) for k, link in file.link.items()]
-    lines += [("scatters", entry(k).name, _spread(k, s)) for k, s in file.tolerance.items()]
-    lines += [("sought", entry(k).name, SENSES[sense]) for k, sense in file.objective.items()]
-    lines += [("allowed", entry(k).name, allowed(k, limit)) for k, limit in file.constraint.items()]
+    lines += [("linked", entry(k).name, _link(k, link)) for k, link in file.link.items()]
+    lines += [("tolerance", entry(k).name, _spread(k, s)) for k, s in file.tolerance.items()]
+    lines += [("objective", entry(k).name, SENSES[sense]) for k, sense in file.objective.items()]
+    lines += [
+        ("constraint", entry(k).name, allowed(k, limit)) for k, limit in file.constraint.items()
+    ]
     if lines:
-        yield Heading("What is asked")
+        yield Heading("The task")
         yield Table((Column(""), Column("Quantity", grow=1), Column("Range", grow=1)), tuple(lines))
 
 
@@ -41,14 +43,14 @@ def _span(key: str, span: VariedSpan) -> str:
 
 def _link(key: str, link: Link) -> str:
     times = "" if link.times == 1 else f"{link.times:g} · "
-    said = f"{times}{entry(link.of).name}"
+    text = f"{times}{entry(link.of).name}"
     if link.plus:
-        said += f" {'+' if link.plus > 0 else '−'} {abs(link.plus):g} {entry(key).unit}"
-    return said.rstrip()
+        text += f" {'+' if link.plus > 0 else '−'} {abs(link.plus):g} {entry(key).unit}"
+    return text.rstrip()
 
 
 def _spread(key: str, spread: Spread) -> str:
     q = entry(key)
     if spread.plus_minus is not None:
-        return f"± {spread.plus_minus:g} {q.unit}".rstrip() + ", evenly"
+        return f"± {spread.plus_minus:g} {q.unit}".rstrip() + ", uniform"
     return f"standard deviation {spread.std:g} {q.unit}".rstrip()

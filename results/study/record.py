@@ -34,7 +34,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "evaluations": len(result.rows),
         "failed": len(result.rows) - len(result.built),
         "incomplete": len(result.incomplete),
-        **({"causes": [_cause(c) for c in found]} if (found := causes(result)) else {}),
+        **({"causes": [_cause(c) for c in reasons]} if (reasons := causes(result)) else {}),
         "feasible": len(result.feasible),
         **({"start": _start(result, result.start)} if result.start else {}),
         "best": [_row(r) for r in best],
@@ -65,7 +65,7 @@ def _verified(v: Verified) -> dict[str, Any]:
 
 def _scatter(s: Scatter) -> dict[str, Any]:
     """Indices, tightening and the surface's Q² are absent where they are not known."""
-    found: dict[str, Any] = {
+    record: dict[str, Any] = {
         "figure": s.key,
         "mean": s.mean,
         "std": s.std,
@@ -74,19 +74,19 @@ def _scatter(s: Scatter) -> dict[str, Any]:
         "inputs": [_input(s, i) for i in range(len(s.inputs))],
     }
     if s.indices:
-        found["indices_from"] = "surface" if s.surface else "sample"
+        record["indices_from"] = "surface" if s.surface else "sample"
     if s.surface:
-        found["surface_rms"] = s.surface.misfit**0.5
+        record["surface_rms"] = s.surface.misfit**0.5
     if s.shares and s.shares.explained is not None:
-        found["surface_explained"] = s.shares.explained
+        record["surface_explained"] = s.shares.explained
     if s.shares and s.shares.enough is not None:
-        found["evaluations_that_would_do"] = s.shares.enough
-    return found
+        record["evaluations_that_would_do"] = s.shares.enough
+    return record
 
 
 def _input(s: Scatter, i: int) -> dict[str, Any]:
     x, known = s.inputs[i], s.indices
-    found: dict[str, Any] = {
+    record: dict[str, Any] = {
         "key": x.key,
         "nominal": x.nominal,
         "std": x.std,
@@ -97,21 +97,21 @@ def _input(s: Scatter, i: int) -> dict[str, Any]:
             ("sobol_first", known.first[i], known.first_ends[i]),
             ("sobol_total", known.total[i], known.total_ends[i]),
         ):
-            found[name] = float(value)
-            found[f"{name}_conf"] = float(max(value - ends[0], ends[1] - value))
-            found[f"{name}_95"] = [float(e) for e in ends]
+            record[name] = float(value)
+            record[f"{name}_conf"] = float(max(value - ends[0], ends[1] - value))
+            record[f"{name}_95"] = [float(e) for e in ends]
     if s.tightened:
-        found["tightened"] = [
+        record["tightened"] = [
             {"factor": t.factor, "range_95_width": t.width, "bought": t.bought}
             for t in s.tightened
             if t.key == x.key
         ]
-    return found
+    return record
 
 
 def _start(result: StudyResult, start: Outcome) -> dict[str, Any]:
-    found = {"values": result.study.start_values, "figures": published(start.figures)}
-    return found | ({"reason": start.reason} if start.reason else {})
+    record = {"values": result.study.start_values, "figures": published(start.figures)}
+    return record | ({"reason": start.reason} if start.reason else {})
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -166,17 +166,17 @@ def _best_lines(result: StudyResult, best: Sequence[Row]) -> list[str]:
 
 def _figures(keys: Iterable[str], figures: Mapping[str, float]) -> str:
     """Those that a design has, by their symbols; a bound, which has its figure's, by its name."""
-    said = ((entry(k), k) for k in keys if k in figures)
+    named = ((entry(k), k) for k in keys if k in figures)
     return ", ".join(
-        f"{q.symbol if k in BY_KEY else q.name} = {valued(k, figures)}" for q, k in said
+        f"{q.symbol if k in BY_KEY else q.name} = {valued(k, figures)}" for q, k in named
     )
 
 
 def _line(result: StudyResult, name: str, values: Mapping[str, float], outcome: Outcome) -> str:
     """A design's varied values and its objectives; why these are missing, where they are."""
-    said = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in values.items())
+    dimensions = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in values.items())
     figures = _figures(result.study.file.objective, outcome.figures)
-    return f"  {name}: {said}: {figures or outcome.reason}"
+    return f"  {name}: {dimensions}: {figures or outcome.reason}"
 
 
 def _verified_words(v: Verified) -> list[str]:
@@ -186,10 +186,12 @@ def _verified_words(v: Verified) -> list[str]:
     for c in v.checks:
         figure = entry(c.key)
         alarm = "" if c.agrees else f"  ALARM: {disagreement(c)}"
-        own = f"; solid model from {figure.range_text(*c.solid_bounds)}" if c.solid_bounds else ""
+        bounds = (
+            f"; solid model from {figure.range_text(*c.solid_bounds)}" if c.solid_bounds else ""
+        )
         lines.append(
             f"    {figure.symbol} {figure.text(c.fast)} and {figure.with_unit(c.solid)} "
-            f"({signed(c.difference_pct, 1)} %{own}){alarm}"
+            f"({signed(c.difference_pct, 1)} %{bounds}){alarm}"
         )
     return lines
 
@@ -211,12 +213,12 @@ def _shares(s: Scatter, i: int) -> list[str]:
     if s.indices is None:
         return []
     first = index_text(s.indices.first[i], s.indices.first_ends[i])
-    said = [
+    texts = [
         f"Sobol index {first}",
         f"total {index_text(s.indices.total[i], s.indices.total_ends[i])}",
     ]
     half = gains_shown(s).get((s.inputs[i].key, 0.5))
     if half is not None:
         less = f"{gain_text(half, least_gain(s))} {entry(s.key).unit}"
-        said.append(f"with half its scatter the 95 % range is {less} narrower")
-    return said
+        texts.append(f"with half its scatter the 95 % range is {less} narrower")
+    return texts

@@ -31,7 +31,7 @@ from flexspline.results.report.spans import Text, alarm, bold, plain, worded
 from flexspline.results.study.best_figure import DRAWN_DESIGNS
 from flexspline.results.study.best_stress import VIEW, BestStress
 from flexspline.results.study.design_table import design_table
-from flexspline.results.study.failures import TOLD, causes, untold
+from flexspline.results.study.failures import LISTED_REASONS, causes, further_reasons
 from flexspline.results.study.labels import entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.question import question
@@ -49,7 +49,7 @@ METHODS = {
     "grid": "Every combination of the given values.",
     "sobol": "Designs spread evenly by a scrambled Sobol sequence.",
     "optimize": "Designs chosen by an optimiser that learns from the earlier designs.",
-    "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
+    "tolerance": "Scatter from uncertainty and tolerances through the whole analysis, by Saltelli's scheme.",
 }
 WIDTHS = {
     "pareto.png": 75, "best.png": 78, BEST_STRESS: 75, "convergence.png": 75, "parallel.png": 88,
@@ -62,9 +62,9 @@ CAPTIONS = {
     "sweep.png": "Figures over the varied dimension; the curve is broken where a design could not be built. "
     "study.csv has every figure.",
     "convergence.png": "Every design in the order chosen{best_so_far}.",
-    "best.png": "{sections} in section, drawn over the first design.",
-    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it; the peak in "
-    "tables and warnings is the study's own, within about {tolerance} of it.",
+    "best.png": "{sections} in section, drawn over the start design.",
+    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it. The peak in "
+    "tables and warnings is from the study and differs by about {tolerance} at most.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
 }
@@ -165,23 +165,23 @@ def _why(result: StudyResult) -> Iterable[Block]:
 
 
 def _failures(result: StudyResult) -> Iterable[Block]:
-    found = causes(result)
-    if not found:
+    reasons = causes(result)
+    if not reasons:
         return
     yield Heading("What could not be built or solved")
-    lines = tuple((str(c.designs), c.name, c.said) for c in found[:TOLD])
+    lines = tuple((str(r.designs), r.name, r.example_words) for r in reasons[:LISTED_REASONS])
     columns = (Column("Designs", "right"), Column("Cause", grow=1), Column("Example", grow=2))
     yield Table(columns, lines)
-    yield Paragraph(f"A design may have several causes. {untold(found)}".strip())
+    yield Paragraph(f"A design may have several causes. {further_reasons(reasons)}".strip())
 
 
 def _counts(result: StudyResult) -> str:
-    said = f"{len(result.built)} of {len(result.rows)} designs were built and solved"
+    text = f"{len(result.built)} of {len(result.rows)} designs were built and solved"
     if result.study.file.constraint:
-        said += f"; {len(result.feasible)} of them meet every constraint"
+        text += f"; {len(result.feasible)} of them meet every constraint"
     if result.incomplete:
-        said += f"; {incomplete(result)}"
-    return said + "."
+        text += f"; {incomplete(result)}"
+    return text + "."
 
 
 def _verified(result: StudyResult) -> Iterable[Block]:

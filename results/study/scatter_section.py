@@ -48,14 +48,14 @@ def scatter_section(s: Scatter) -> Iterable[Block]:
 def source_words(s: Scatter) -> str:
     """Where indices come from and how well they are known, or why there are none."""
     if s.shares is None:
-        return "No input changes it, so there are no shares."
+        return "No input changes this figure, so there are no shares."
     explained = s.shares.explained
     if s.surface and explained is not None:
         missed = 100 * (1 - explained)
-        said = f"{missed:.2g} %" if missed >= 0.01 else "less than 0.01 %"
+        share = f"{missed:.2g} %" if missed >= 0.01 else "less than 0.01 %"
         return (
             "Distribution, indices and tightening come from one quadratic surface through all designs; at "
-            f"designs left out of the fit it misses {said} of the variance (root mean square "
+            f"designs left out of the fit the surface misses {share} of the variance (root mean square "
             f"{s.surface.misfit**0.5:.2g} {entry(s.key).unit}), which the intervals include."
         )
     tried = ""

@@ -37,27 +37,27 @@ def _clearance(c: ClearanceSlope) -> dict[str, Any]:
 
 
 def _entry(s: Slope) -> dict[str, Any]:
-    found: dict[str, Any] = {"key": s.key, "value_mm": s.value_mm, "figure": K_OF[s.part]}
+    entry: dict[str, Any] = {"key": s.key, "value_mm": s.value_mm, "figure": K_OF[s.part]}
     if s.held is not None:
-        found["adjoint_Nm_per_rad_per_mm"] = s.held
+        entry["adjoint_Nm_per_rad_per_mm"] = s.held
     if s.solved is not None:
-        found["difference_Nm_per_rad_per_mm"] = s.solved
-        found["difference_error_Nm_per_rad_per_mm"] = s.solved_error
+        entry["difference_Nm_per_rad_per_mm"] = s.solved
+        entry["difference_error_Nm_per_rad_per_mm"] = s.solved_error
     if s.agree is not None:
-        found["agree"] = s.agree
+        entry["agree"] = s.agree
     if s.why:
-        found["one_way_because"] = s.why.words
-    found["pct_per_pct"] = s.elasticity
+        entry["one_way_because"] = s.why.words
+    entry["pct_per_pct"] = s.elasticity
     if s.backlash_arcsec_per_mm is not None:
-        found["backlash_arcsec_per_mm"] = s.backlash_arcsec_per_mm
+        entry["backlash_arcsec_per_mm"] = s.backlash_arcsec_per_mm
     if s.why_no_sum:
-        found["no_backlash_because"] = s.why_no_sum.words
-    return found
+        entry["no_backlash_because"] = s.why_no_sum.words
+    return entry
 
 
-def write_sensitivity(folder: Path, said: dict[str, Any]) -> None:
+def write_sensitivity(folder: Path, content: dict[str, Any]) -> None:
     """`sensitivity.json`, whole or not at all."""
-    write_bytes(folder / SENSITIVITY, (as_json(said) + "\n").encode())
+    write_bytes(folder / SENSITIVITY, (as_json(content) + "\n").encode())
 
 
 def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
@@ -71,9 +71,9 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
         held = "-" if s.held is None else f"{s.held:.1f}"
         solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
         of_sum = "-" if s.backlash_arcsec_per_mm is None else f"{s.backlash_arcsec_per_mm:.3f}"
-        word = {True: "", False: "  DISAGREE", None: f"  one way only: {s.why}"}[s.agree]
+        word = {True: "", False: "  DISAGREE", None: f"  one method only: {s.why}"}[s.agree]
         if s.why_no_sum:
-            word += f"  no effect on the backlash sum given: {s.why_no_sum}"
+            word += f"  effect on the backlash sum not given: {s.why_no_sum}"
         out.append(
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
             f"{of_sum:>10}{word}"

@@ -21,12 +21,12 @@ def table_of(result: StudyResult) -> StudyColumns:
     """
     rows = result.rows
     keys = list(dict.fromkeys(k for r in rows for k in r.values))
-    said = [published(r.outcome.figures) for r in rows]
-    figures = list(dict.fromkeys(k for row in said for k in row))
+    figures_of_rows = [published(r.outcome.figures) for r in rows]
+    figures = list(dict.fromkeys(k for row in figures_of_rows for k in row))
     feasible = {r.slot for r in result.feasible}
     table: StudyColumns = {"design": [r.slot for r in rows]}
     table |= {k: [r.values[k] for r in rows] for k in keys}
-    table |= {k: [row.get(k) for row in said] for k in figures}
+    table |= {k: [row.get(k) for row in figures_of_rows] for k in figures}
     table["feasible"] = [r.slot in feasible for r in rows]
     table["reason"] = [r.outcome.reason for r in rows]
     table["wall_s"] = [round(r.outcome.seconds, 4) for r in rows]

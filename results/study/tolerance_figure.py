@@ -83,8 +83,8 @@ def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
     shades = (PALETTE[3], PALETTE[2], PALETTE[1], PALETTE[0])
     for i in range(len(TIGHTENING_FACTORS) - 1, -1, -1):
         values = [by[s.inputs[j].key, TIGHTENING_FACTORS[i]] for j in order]
-        said = f"× {TIGHTENING_FACTORS[i]:g}" if TIGHTENING_FACTORS[i] else "perfect"
-        axes.barh(y, values, 0.62, color=shades[i], label=said)
+        factor = f"× {TIGHTENING_FACTORS[i]:g}" if TIGHTENING_FACTORS[i] else "perfect"
+        axes.barh(y, values, 0.62, color=shades[i], label=factor)
     axes.set_yticks(y, [""] * len(order))
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel(f"95 % range narrower by, in {entry(s.key).unit}")

@@ -12,12 +12,12 @@ def start_breaks(result: StudyResult) -> str:
     if result.start is None:
         return ""
     figures = result.start.figures
-    said = [
-        f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed are {allowed(key, limit)}"
+    broken = [
+        f"{entry(key).name} {beyond(key, figures, (limit.min, limit.max))}, allowed: {allowed(key, limit)}"
         for key, limit in result.study.file.constraint.items()
         if key in figures and limit.excess(figures[key]) > 0
     ]
-    return f"breaks a constraint ({'; '.join(said)})" if said else ""
+    return f"breaks a constraint ({'; '.join(broken)})" if broken else ""
 
 
 def unbeaten_start(result: StudyResult) -> list[str]:
@@ -32,6 +32,6 @@ def unbeaten_start(result: StudyResult) -> list[str]:
     if key not in figures or figures[key] == best or (figures[key] > best) != (goal == "maximize"):
         return []
     return [
-        f"No design is better than the start: {entry(key).name} {valued(key, figures)}, of design "
-        f"{result.pareto[0].slot} {valued(key, result.pareto[0].outcome.figures)}."
+        f"No design is better than the start design: {entry(key).name} {valued(key, figures)}; design "
+        f"{result.pareto[0].slot}: {valued(key, result.pareto[0].outcome.figures)}."
     ]

@@ -24,17 +24,17 @@ STRONG_CORRELATION = 0.3
 
 def influences(result: StudyResult) -> list[str]:
     """What moves each objective."""
-    said = []
-    for figure, found in own_influences(result).items():
+    sentences = []
+    for figure, correlations in own_influences(result).items():
         strong = [
             f"{'rises' if i.correlation > 0 else 'falls'} with {entry(i.key).name} "
             f"(rank correlation {signed(i.correlation)})"
-            for i in found
+            for i in correlations
             if abs(i.correlation) >= STRONG_CORRELATION
         ]
         follows = ", ".join(strong) or "follows no single dimension"
-        said.append(f"{entry(figure).name} {follows}.")
-    return said
+        sentences.append(f"{entry(figure).name} {follows}.")
+    return sentences
 
 
 def misses(result: StudyResult) -> list[str]:
@@ -42,17 +42,17 @@ def misses(result: StudyResult) -> list[str]:
     row = result.nearest
     if row is None or result.feasible:
         return []
-    said = []
+    sentences = []
     for key, limit in result.study.file.constraint.items():
         q = entry(key)
         kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
-        asked = allowed(key, limit)
-        said.append(
-            f"{q.name}: {kept} of {len(result.built)} designs meet {asked}; the nearest to all "
+        constraint = allowed(key, limit)
+        sentences.append(
+            f"{q.name}: {kept} of {len(result.built)} designs meet {constraint}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
     at = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items())
-    return [*said, f"Design {row.slot}: {at}."]
+    return [*sentences, f"Design {row.slot}: {at}."]
 
 
 def allowed(key: str, limit: Limit) -> str:
@@ -64,22 +64,22 @@ def allowed(key: str, limit: Limit) -> str:
 
 def limits(result: StudyResult) -> list[str]:
     """Spans, constraints and designs that could not be built, which hold the best design back."""
-    said = _open_ends(result)
+    sentences = _open_ends(result)
     for best in result.pareto[:1]:
         for key in binding(result, best):
             q = entry(key)
-            said.append(
+            sentences.append(
                 f"Design {best.slot} is limited by the constraint on {q.name}: "
-                f"{q.with_unit(best.outcome.figures[key])}, allowed are "
+                f"{q.with_unit(best.outcome.figures[key])}, allowed: "
                 f"{allowed(key, result.study.file.constraint[key])}."
             )
         for key, value in unbuilt_neighbours(result, best):
             q = entry(key)
-            said.append(
+            sentences.append(
                 f"Next to design {best.slot}, the next {q.name} of the grid, {q.with_unit(value)}, could not "
                 "be built or solved."
             )
-    return said
+    return sentences
 
 
 def _open_ends(result: StudyResult) -> list[str]:
@@ -89,27 +89,27 @@ def _open_ends(result: StudyResult) -> list[str]:
     for best in result.pareto[:1] if one else result.best(LISTED_DESIGNS):
         for end in open_ends(result, best):
             at_end.setdefault(end, []).append(str(best.slot))
-    said = []
+    sentences = []
     for end, slots in at_end.items():
         q, many = entry(end.key), len(slots) > 1
         who = f"Designs {listed(slots, 'designs')} lie" if many else f"Design {slots[0]} lies"
-        said.append(
+        sentences.append(
             f"{who} at the {end.end} end of the range of {q.name} ({q.with_unit(end.value)}): a wider "
             "range may contain a better design."
         )
-    return said
+    return sentences
 
 
 def disagreement(check: Check) -> str:
     """Why the fast and the solid model may differ by more than they should."""
     if check.fast_bounds and check.solid_bounds:
         return (
-            "they disagree beyond their bounds; the fast model has the effect of the shaft's holes from "
-            "the nominal design"
+            "the two models differ by more than their bounds; the fast model takes the effect of the shaft's "
+            "holes from the nominal design"
         )
     return (
-        f"they differ by more than {100 * STRESS_SHARE:g} %; neither has bounds: the fast model's mesh "
-        "is finer, and only the solid model contains holes near the peak"
+        f"the two models differ by more than {100 * STRESS_SHARE:g} %; neither has bounds: the fast model "
+        "has a finer mesh, and only the solid model contains holes near the peak"
     )
 
 

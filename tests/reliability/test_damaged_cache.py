@@ -174,7 +174,7 @@ def test_a_clock_set_back(
     assert figures(again) == expected
     assert "axisymmetric bounds" not in again.stderr  # answered by what was kept
     resumed = flexspline(*study, folder=tmp_path)
-    assert "4 designs are finished already" in resumed.stderr
+    assert "4 designs are already finished" in resumed.stderr
     assert json.loads(resumed.stdout)["best"] == json.loads(found.stdout)["best"]
     longer = file.read_text().replace("evaluations = 4", "evaluations = 8")
     file.write_text(longer)

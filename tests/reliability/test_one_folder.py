@@ -55,7 +55,7 @@ def test_the_second_is_refused_in_one_line(tmp_path: Path) -> None:
         status, said = backlash(out)
         assert status == 2
         assert len(said) == 1
-        assert "another flexspline command writes there now" in said[0]
+        assert "another flexspline command is writing there" in said[0]
         assert '--out = "' in said[0]
         assert list(out.iterdir()) == []
     assert not out.exists()  # the first wrote nothing

@@ -11,6 +11,7 @@ from dataclasses import replace
 import pytest
 from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
+from written_report import write_report
 
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.stiffnesses import Stiffnesses
@@ -20,13 +21,12 @@ from flexspline.results.records import stiffness_record
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.tables import UNCHECKED, solves
-from flexspline.results.report.write import write_report
 from flexspline.results.studio.answer import message
 
 FIGURES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e")
 ESTIMATE = replace(K_E, guaranteed=False, method="recovery estimate")
 """Solved on the meridian, and yet no theorem: what the lobe cases are."""
-GUARANTEE = letters("hold without exception")
+GUARANTEE = letters("These bounds are proven")
 
 
 def found(guaranteed: tuple[str, ...]) -> Stiffnesses:

@@ -8,6 +8,7 @@ import pytest
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from unlike_gears import GEARS
+from written_report import write_report
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import backlash
@@ -19,7 +20,6 @@ from flexspline.results.doubt import missing, spread_sentence
 from flexspline.results.records import as_json, backlash_record
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 from flexspline.results.studio.answer import message
 
 SILENT, PART, FULL = GEARS["no uncertainty"], GEARS["one source"], GEARS["cup"]

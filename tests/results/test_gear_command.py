@@ -345,8 +345,8 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
     """Less lost motion by the cone's part of the clearance, and no word of a relief."""
     straight = alone(DESIGN.changed({"gear.tooth_face": "straight"}))
     assert straight.lost_motion_arcsec < curve.lost_motion_arcsec - 30
-    assert any("opens as a cone" in line for line in gear_notes(curve))
-    assert not any("opens as a cone" in line for line in gear_notes(straight))
+    assert any("deforms to a cone" in line for line in gear_notes(curve))
+    assert not any("deforms to a cone" in line for line in gear_notes(straight))
 
 
 @pytest.mark.parametrize(
@@ -376,7 +376,7 @@ def test_a_clearance_that_makes_the_gap_smaller_is_explained() -> None:
     short = flexspline.gear(DESIGN.changed({"wave_generator.deflection_mm": 0.189}))
     negative = short.terms_arcsec["bearing_play"] < 0
     assert negative == any(
-        "read bearing_play and tight_gear together" in n for n in gear_notes(short)
+        "bearing_play and tight_gear only together" in n for n in gear_notes(short)
     )
     assert negative
 
@@ -413,7 +413,7 @@ def test_play_that_closes_the_gap_is_warned_of() -> None:
     for found in (loose, looser):
         assert any("reduce the play" in line for line in gear_warnings(found))
     assert not any("reduce the play" in line for line in gear_warnings(tight))
-    assert any("act together" in line for line in gear_notes(tight))
+    assert any("play interact" in line for line in gear_notes(tight))
     assert any("below a ratio of 45" in line for line in gear_notes(tight))
 
 

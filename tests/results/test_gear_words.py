@@ -40,13 +40,14 @@ WARNINGS: dict[GearWarning, str] = {
     PressingFlanks(
         12.34, LowRim(0.05, 0.2)
     ): "up to 12 N each: half the play, 0.05 mm, reduces the rim's stroke of 0.2 mm",
-    PressingFlanks(5.0, "flanks_cut"): "up to 5 N each: the flanks cut into each other",
+    PressingFlanks(5.0, "flanks_cut"): "up to 5 N each: the flanks interfere",
     PressingFlanks(
         25.0, TightFlanks(54.2, 12.0)
     ): "front flanks press at 54°, back flanks at 12° from the major axis",
     CuttingFlanks(
         "plain", 52.6, 4.04, 55.0, None
-    ): "from 53° off the major axis on, by up to 4 µm at 55°: use the relieved shape or more clearance",
+    ): "interfere at 53° and more from the major axis, by up to 4 µm at 55°: use the relieved shape or more "
+    "clearance",
     CuttingFlanks(
         "drawn", 30.0, 4.0, 55.0, 0.1
     ): "more clearance, or make the working depth less than 0.1 mm",
@@ -59,8 +60,8 @@ WARNINGS: dict[GearWarning, str] = {
 }
 NOTES: dict[GearNote, str] = {
     FallingStiffness("K2", "K1", 0.082, 87.4): (
-        "K2 is 8.2 % below K1: the gear is softer at larger torque, where catalogues' gears are stiffer. "
-        "Here both flanks press without torque"
+        "K2 is 8.2 % below K1: this gear becomes softer at larger torque, but gears in catalogues "
+        "become stiffer. Here both flanks press without torque"
     ),
     FallingStiffness("K3", "K2", 0.3, 0.0): "K3 is 30 % below K2",
     HalvedBalls(23, 24): "24 balls instead of 23",
@@ -71,18 +72,18 @@ NOTES: dict[GearNote, str] = {
     LoadedLastPair(54.0): "54° from the major axis, carries a large force",
     TwoTorques(
         0.5, 0.8
-    ): "at load.torque_Nm = 0.5, the lost motion at 0.8 N·m, 4 % of rated torque",
+    ): "at load.torque_Nm = 0.5, the lost motion at 0.8 N·m (4 % of rated torque)",
     JointClearances(
         24.1, 7.04
-    ): "is 24 arcsec smaller; the terms remove the flank clearance first, so the term "
-    "of the play is 7 arcsec",
+    ): "decreases by 24 arcsec; the terms remove the flank clearance first, so the term of the play "
+    "is 7 arcsec",
     BucklingTube(
         788.0, 832.0
     ): "at about 790 N·m (lower bound of tests), where its shear stress is 830 MPa",
-    "play_beside_stroke": "read bearing_play and tight_gear together",
+    "play_beside_stroke": "use the terms bearing_play and tight_gear only together",
     "tube_yields_first": "the flexspline's tube is short or thick: it yields before it buckles",
     "tube_buckles_first": "the flexspline's tube buckles before the gear ratchets",
-    "both_limits_alike": "rounded to two digits they happen to be equal",
+    "both_limits_alike": "equal only because both are rounded to two digits",
     "no_ratcheting": "no torque was found at which the gear ratchets",
     "ratcheting_is_upper": "the ratcheting torque is an upper limit",
 }

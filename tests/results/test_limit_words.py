@@ -18,7 +18,7 @@ from flexspline.results.warned import shortfalls
 @pytest.mark.parametrize(
     ("why", "said"),
     [
-        (ToothTwist(200), "the twist reaches one tooth, 360°/200"),
+        (ToothTwist(200), "the twist reaches one tooth pitch, 360°/200"),
         (
             ReachedStress("flexspline", "tube", None, 500.0, is_fatigue_limit=True),
             "the stress of the flexspline's tube under torque alone reaches the fatigue limit of 500 MPa",
@@ -41,14 +41,14 @@ from flexspline.results.warned import shortfalls
 def test_why_the_linear_model_ends(why: ToothTwist | ReachedStress, said: str) -> None:
     assert reason(LinearLimit(88.2, why)) == said
     without = reason(LinearLimit(88.2, why, peaks_solved=False))
-    assert without.startswith(f"{said} (without the peak stress of notches")
+    assert without.startswith(f"{said} (without the peak stress at notches")
 
 
 def test_a_load_torque_beyond_it_is_said() -> None:
     limit = LinearLimit(88.2, ToothTwist(200))
     beyond, within = (design().changed({"load.torque_Nm": torque}) for torque in (5000.0, 0.5))
     (line,) = load_beyond(limit, beyond)
-    assert "load.torque_Nm = 5000 is beyond 88.2 N·m" in line
+    assert "load.torque_Nm = 5000 exceeds 88.2 N·m" in line
     assert list(load_beyond(limit, within)) == []
 
 

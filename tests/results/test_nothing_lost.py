@@ -10,6 +10,7 @@ import pytest
 from example_files import EXAMPLES
 from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
+from written_report import write_report
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
@@ -22,7 +23,6 @@ from flexspline.results.pictures import RunPictures
 from flexspline.results.report import build
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
 
 EXAMPLE = EXAMPLES / "keyed-shaft.toml"
@@ -57,7 +57,7 @@ class Answer:
 
     def mentions(self, name: str) -> bool:
         """The reason, beside a figure's long name, once in `warnings` and once on stderr."""
-        line = f"{name}: not found, {WHY}"
+        line = f"{name}: not computed, {WHY}"
         return self.record["warnings"].count(line) == 1 == self.told.count(f"warning: {line}")
 
 
@@ -125,7 +125,7 @@ def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):
     low, high = answer.record["K_b_bounds_Nm_per_rad"]
     half = 50 * (high - low) / answer.record["K_b_Nm_per_rad"]
     assert half > 1.0
-    said = f"K_b is known to ± {half:.2g} %, wider than the ± 1 % asked for"
+    said = f"K_b is known to ± {half:.2g} %, wider than the requested ± 1 %"
     mine = [line for line in answer.record["warnings"] if line.startswith(said)]
     assert len(mine) == 1
     assert "none is refined beyond 10" in mine[0]
@@ -141,7 +141,7 @@ def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     cache = Cache(tmp_path / "cache")
     result = analysis.run(AnalysisContext(load_design(revolved), cache, Progress()))
     assert not result.fields
-    lines = [line for line in all_warnings(result) if line.endswith(f"not found, {WHY}")]
+    lines = [line for line in all_warnings(result) if line.endswith(f"not computed, {WHY}")]
     assert len(lines) == 4  # two peaks under torque, the ellipse, the contact
     content = build.report_content(result, RunPictures({}), None, ())
     write_report(tmp_path / "r.pdf", content)

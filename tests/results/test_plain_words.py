@@ -6,9 +6,9 @@ import pytest
 from hand_made_gear import content
 from page_text import strings
 from pypdf import PdfReader
+from written_report import payload
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-from flexspline.results.report.write import payload
 
 RING = EquivalentRing(0.55, 0.71, 0.66, 0.69, 0.01, 1000)
 

@@ -14,13 +14,15 @@ LOOP_WIDTH = """
 """Of the causes' figure, where friction is one of them."""
 CAPTIONS = {
     "measured_and_predicted": """
-        Above, the measured angle on the simulated line; below, their difference. A difference inside
-        the band is within the design's stated uncertainty; a pattern in the difference is not.""",
+        Top: the measured angle and the simulated line. Bottom: their difference. A difference inside the
+        band is within the design's stated uncertainty; this uncertainty does not explain a pattern in the
+        difference.""",
     "residual_simulation": f"""
-        Residual of the simulation, its stiffness and gap calibrated by up to two standard deviations of
-        the design's uncertainty, against every recorded channel. With no cause missing, all points lie in
-        the grey band and the lines on zero. Lines apart for rising and falling torque mean friction or
-        lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes.
+        Residual of the simulation against every recorded channel. Stiffness and gap are calibrated by up
+        to two standard deviations of the design's uncertainty. If no cause is missing, all points lie in
+        the grey band and the lines lie on zero. Different lines for rising and falling torque indicate
+        friction or a lag; lines for T > 0 and T < 0 that drift apart indicate a gap or a stiffness that
+        changes.
         {DRAWN_APART}""",
     "causes": """
         Each part of the extended model alone. Pale: the measurement minus all other parts. Dark: the
@@ -35,20 +37,20 @@ CAPTIONS = {
         Residual of the best model: the points should fill the grey band evenly and the lines stay near
         zero. A panel with a tested channel shows the result of the test. {DRAWN_APART}""",
     "residual_unknown": f"""
-        Residual of the best model, unnamed structure included. The structure that no cause
-        explains lies in: {{where}}; the figure of the model's parts shows its course. {DRAWN_APART}""",
+        Residual of the best model, including unnamed structure. The structure that no cause explains lies
+        in: {{where}}. The figure of the model's parts shows this structure. {DRAWN_APART}""",
     "envelope": f"""
         The angle between −T and +T of each unit. The band contains {COVERED_WORDS} units that agree
         with the design. The design's clearances and stiffness do not explain a unit beyond the band.""",
     "positions": """
         Positions of the two ends of each unit. In the symmetric simulation every mid position is zero. Each
-        unit's angle zero is unknown, so another mid position alone proves nothing.""",
+        unit's angle zero is unknown, so a different mid position alone proves nothing.""",
     "rivals": """
-        Above, the odds of the explanations; explanations with bars of similar length cannot be
-        distinguished. Below, if shown, how well a further measurement would separate them.""",
+        Top: the odds of the explanations; explanations with bars of similar length cannot be distinguished.
+        Bottom, if shown: how well a further measurement would distinguish them.""",
     "stiffness": """
-        Measured stiffness of each specimen as deviation from the simulation. With the cause found,
-        the diamonds lie on the measured points.""",
+        Measured stiffness of each specimen as deviation from the simulation. If the identified cause is
+        right, the diamonds lie on the measured points.""",
     "dimensions": """
         The same deviation against every dimension that varies. A slope shows the dimension on which
         the fault depends. An equal shift of all points comes from the material, or from a part that the

@@ -41,15 +41,15 @@ class ContributionPanel:
 def parts(shown: SweepPictureData) -> list[ContributionPanel]:
     """Named causes, then structure that has no name."""
     identified = shown.explained.identified
-    found = [_named(shown, c) for c in shown.analysis.causes]
-    told = {p.owner for p in found}
+    panels = [_named(shown, c) for c in shown.analysis.causes]
+    named = {p.owner for p in panels}
     for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
-        if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:
+        if owner in named or rms < LEAST_SHOWN * shown.noise_arcsec:
             continue
         trace = rms < shown.noise_arcsec
         title, lines = _unnamed(shown.channel_name(owner.removeprefix("?")), owner, rms, trace)
-        found.append(ContributionPanel(owner, title, lines, shown.channel(_channel_of(owner))))
-    return found
+        panels.append(ContributionPanel(owner, title, lines, shown.channel(_channel_of(owner))))
+    return panels
 
 
 def _unnamed(
@@ -90,7 +90,7 @@ def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
         odds_words(cause.evidence_nats),
     ]
     if cause.alternatives:
-        lines[-2:] = ["not decided: rivals", "explain it as well"]
+        lines[-2:] = ["not decided: other causes", "explain it equally well"]
     return ContributionPanel(
         cause.id,
         _short(cause_title(cause)),

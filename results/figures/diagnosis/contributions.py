@@ -39,14 +39,14 @@ def _size(line: str) -> float:
 
 def write_contributions(path: Path, shown: SweepPictureData) -> None:
     """One panel per part: pale, what was measured with all other parts taken off; dark, the model."""
-    found = parts(shown)
-    height = TOP + len(found) * PANEL + (len(found) - 1) * BETWEEN + BOTTOM
+    panels = parts(shown)
+    height = TOP + len(panels) * PANEL + (len(panels) - 1) * BETWEEN + BOTTOM
     with styled():
         from matplotlib.lines import Line2D
 
         figure = new_figure(8.0, height, DPI)
-        for i, part in enumerate(found):
-            low = BOTTOM + (len(found) - 1 - i) * (PANEL + BETWEEN)
+        for i, part in enumerate(panels):
+            low = BOTTOM + (len(panels) - 1 - i) * (PANEL + BETWEEN)
             axes = figure.add_axes((0.105, low / height, 0.565, PANEL / height))
             _panel(axes, shown, part)
             axes.set_title(part.title, fontsize=10.5, pad=7, x=0.0)
@@ -122,8 +122,8 @@ def _offset(axes: Axes, shown: SweepPictureData) -> None:
     reach = max(4 * abs(offset), 3 * prepared.band_Nm)
     rows = thinned((np.abs(read) < reach) & ~prepared.outlier)
     for rises, colour in ((True, RISING), (False, FALLING)):
-        own = rows[shown.rises[rows] == rises]
-        axes.plot(read[own], angle[own], "o", ms=2.8, mew=0, color=colour, alpha=0.6)
+        branch = rows[shown.rises[rows] == rises]
+        axes.plot(read[branch], angle[branch], "o", ms=2.8, mew=0, color=colour, alpha=0.6)
     t = np.linspace(-reach, reach, 601)
     axes.plot(t, np.sign(t) * gap / 2, color=PALETTE[2], lw=1.2, ls=(0, (4, 3)))
     axes.plot(t, np.sign(t - offset) * gap / 2, color=INK, lw=1.4)

@@ -92,9 +92,11 @@ def _sweep(shown: SweepPictureData, sheet: _FigureList) -> None:
         channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
         words = caption("residual_unknown", where=", ".join(channels))
     after = "Residual of the best model against every channel"
-    said = residual_words(shown.tests, outcome.unexplained)
+    results = residual_words(shown.tests, outcome.unexplained)
     sheet.add(
-        "residual_model", lambda path: write_channels(path, shown, shown.left, after, said), words
+        "residual_model",
+        lambda path: write_channels(path, shown, shown.left, after, results),
+        words,
     )
     if parts(shown):
         rubs = any(c.id == FRICTION for c in outcome.causes)
@@ -113,15 +115,15 @@ def residual_words(
     """Of each channel, whether structure is left in it; the best model holds what has no name too."""
     nameless = {u.channel: u.rms for u in unexplained}
     nothing = "no further structure" if nameless else "no structure left"
-    said = {}
+    results = {}
     for t in tests:
         if t.p_value < STRUCTURE_P_VALUE:
-            said[t.channel] = f"structure left, {t.rms_arcsec:.2g} arcsec"
+            results[t.channel] = f"structure left, {t.rms_arcsec:.2g} arcsec"
         elif t.channel in nameless:
-            said[t.channel] = f"fitted without a name, {nameless[t.channel]:.2g} arcsec"
+            results[t.channel] = f"fitted, no cause known, {nameless[t.channel]:.2g} arcsec"
         else:
-            said[t.channel] = nothing
-    return said
+            results[t.channel] = nothing
+    return results
 
 
 def _end_points(analysis: EndPointAnalysis, sheet: _FigureList) -> None:

@@ -69,7 +69,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
     ]
     title = "Lost motion of each unit against the prediction"
     with _unit_rows(path, labels, title, "angle between −T and +T", 0.8) as axes:
-        ends, said = [], []
+        ends, annotations = [], []
         for row, unit in enumerate(units):
             envelope = analysis.envelope_at(unit.torque_Nm)
             low, high = envelope.interval_arcsec
@@ -86,7 +86,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             if np.isfinite(limit):
                 axes.plot(
                     [limit] * 2, [row - 0.33, row + 0.33], color=MUTED, lw=1.4, ls=(0, (2, 1.5)),
-                    label="most that clearance can give" if first else None,
+                    label="largest angle from clearance" if first else None,
                 )  # fmt: skip
                 ends.append(limit)
             colour = INK if unit.within else ACCENT
@@ -96,12 +96,12 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             )  # fmt: skip
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
-            said.append(axes.annotate(
+            annotations.append(axes.annotate(
                 f"{unit.total_arcsec:.1f} arcsec, {words} ({signed(unit.z, 1)} σ)",
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
-        fit(said, 0.235 * axes.figure.bbox.width)
+        fit(annotations, 0.235 * axes.figure.bbox.width)
         room = 0.06 * (max(ends) - min(ends) + 1e-9)
         axes.set_xlim(min(ends) - room, max(ends) + room)
 
@@ -111,7 +111,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
     units = shown_units(analysis)
     labels = [f"unit {n}" for n in plain_names(tuple(u.unit for u in units))]
     reach = analysis.mids.asymmetry_reach_arcsec
-    with _unit_rows(path, labels, "Where each unit's ends lie", "angle read") as axes:
+    with _unit_rows(path, labels, "Positions of both ends of each unit", "measured angle") as axes:
         axes.axvspan(
             -reach,
             reach,

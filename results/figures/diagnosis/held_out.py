@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 BARS = (
-    ("before", "simulation as it stands", PALETTE[2]),
+    ("before", "simulation as designed", PALETTE[2]),
     ("calibrated", "calibrated", PALETTE[1]),
-    ("after", "with the causes found", PALETTE[0]),
+    ("after", "with the causes", PALETTE[0]),
 )
 
 TITLE_LETTERS = 46
@@ -51,7 +51,7 @@ def write_held_out(path: Path, gain: Gain) -> None:
         rows.grid(axis="y")
         rows.set_xlabel("held-out row, in order")
         rows.set_ylabel(f"measured − predicted in {gain.unit}")
-        names = ("as it\nstands", "cali-\nbrated", "with\ncauses")
+        names = ("as\ndesigned", "cali-\nbrated", "with\ncauses")
         before_and_after(bars, gain, names, noise_words(gain))
         bars.set_xlim(-0.5, 2.6)
         what = wrapped(left_out_words(gain.held_out), TITLE_LETTERS, lines=1)
@@ -64,7 +64,7 @@ def write_held_out(path: Path, gain: Gain) -> None:
 
 
 def before_and_after(bars: Axes, gain: Gain, names: Sequence[str], noise: str) -> None:
-    """Three bars, the rms as the simulation stands, calibrated and with what was found; the noise across."""
+    """Rms error of the simulation as designed, calibrated and with the causes; the noise as a dashed line."""
     sizes = (gain.rmse_before, gain.rmse_calibrated, gain.rmse_after)
     bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in BARS], edgecolor=INK, lw=0.6)
     for i, size in enumerate(sizes):

@@ -47,7 +47,7 @@ def write_channels(
     shown: SweepPictureData,
     left_arcsec: np.ndarray,
     title: str,
-    told: Mapping[str, str] | None = None,
+    results: Mapping[str, str] | None = None,
 ) -> None:
     """Write the panels.
 
@@ -60,9 +60,9 @@ def write_channels(
         figure, panels = panel_sheet(len(shown.channels), title, angle_title("residual"))
         for axes, channel in zip(panels, shown.channels, strict=True):
             _panel(axes, shown, channel, left_arcsec, high)
-            if told and channel.key in told:
+            if results and channel.key in results:
                 axes.text(
-                    0.985, 0.03, told[channel.key], transform=axes.transAxes, ha="right", va="bottom",
+                    0.985, 0.03, results[channel.key], transform=axes.transAxes, ha="right", va="bottom",
                     fontsize=9, color=INK,
                     bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.5},
                 )  # fmt: skip
@@ -206,5 +206,5 @@ def _lines(
     """Sign of the torque, and the mean line over the channel, of a branch's two halves."""
     few = len(np.unique(channel.values)) <= LEVELS
     for sign in (1, -1):
-        own = shown.kept & (shown.rises == rises) & (np.sign(shown.history.torque_Nm) == sign)
-        yield sign, *means(channel.values[own], left[own], few)
+        half = shown.kept & (shown.rises == rises) & (np.sign(shown.history.torque_Nm) == sign)
+        yield sign, *means(channel.values[half], left[half], few)

@@ -50,7 +50,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             )  # fmt: skip
         axes.set_yticks(range(len(ranked)), [_words(h, names) for h in ranked], fontsize=9.5)
         _bare(axes, len(ranked))
-        axes.set_xlabel("share of the odds, of those shown, in %", fontsize=9.5)
+        axes.set_xlabel("share of the odds of the causes shown, in %", fontsize=9.5)
         axes.set_xlim(0, 118 * share.max())
         titled(figure, 1 - 0.26 / height, "Possible causes")
         if plans:
@@ -71,7 +71,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             titled(
                 figure,
                 (0.55 + 0.36 * len(plans) + 0.22) / height,
-                "Measurements that separate them",
+                "Measurements that distinguish them",
             )
         save_png(figure, path)
 

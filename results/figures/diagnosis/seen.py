@@ -109,23 +109,25 @@ class SweepPictureData:
     def channels(self) -> list[PlotChannel]:
         """Channels that were recorded and vary."""
         sweep, h = self.explained.prepared.sweep, self.history
-        found = [PlotChannel("torque_Nm", CHANNELS["torque_Nm"].label, self.output_Nm)]
+        recorded = [PlotChannel("torque_Nm", CHANNELS["torque_Nm"].label, self.output_Nm)]
         if sweep.history.time_s is not None and h.time_s is not None:
-            found.append(_time(h.time_s))
+            recorded.append(_time(h.time_s))
         if h.cycle.max() > 0:
-            found.append(PlotChannel("cycle", CHANNELS["cycle"].label, sweep.own_cycle))
+            recorded.append(PlotChannel("cycle", CHANNELS["cycle"].label, sweep.own_cycle))
         if h.temperature_C is not None:
-            found.append(
+            recorded.append(
                 PlotChannel("temperature_C", CHANNELS["temperature_C"].label, h.temperature_C)
             )
         if h.input_angle_deg is not None:
-            found.append(
+            recorded.append(
                 PlotChannel("input_angle_deg", CHANNELS["input_angle_deg"].label, h.input_angle_deg)
             )
         if len(sweep.units) > 1:
             names = plain_names(sweep.units)
-            found.append(PlotChannel("unit", CHANNELS["unit"].label, h.unit.astype(float), names))
-        return [c for c in found if np.ptp(c.values) > 0]
+            recorded.append(
+                PlotChannel("unit", CHANNELS["unit"].label, h.unit.astype(float), names)
+            )
+        return [c for c in recorded if np.ptp(c.values) > 0]
 
     def channel_name(self, key: str) -> str:
         """The name by which structure in a channel is said: in time only where time was recorded."""
@@ -144,8 +146,8 @@ def seen(diagnosis: Diagnosis) -> SweepPictureData | None:
 
 def thinned(rows: np.ndarray) -> np.ndarray:
     """Row numbers of a mask, no more than can be told apart."""
-    found = np.flatnonzero(rows)
-    return found[:: max(1, -(-len(found) // MOST_DRAWN_POINTS))]
+    indices = np.flatnonzero(rows)
+    return indices[:: max(1, -(-len(indices) // MOST_DRAWN_POINTS))]
 
 
 def plain_names(names: tuple[str, ...]) -> tuple[str, ...]:

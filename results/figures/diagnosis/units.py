@@ -25,33 +25,33 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
 
 def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
     """How much of each cause each unit shows, by the cause's title; none for a single unit."""
-    apart, causes = shown.analysis.apart, shown.diagnosis.outcome.causes
-    if apart is None:
+    separate, causes = shown.analysis.apart, shown.diagnosis.outcome.causes
+    if separate is None:
         shares = {c.id: shown.explained.shares.get(c.id) for c in causes}
     else:
-        shares = {c.id: _sizes_apart(apart, c) for c in causes}
+        shares = {c.id: _sizes_apart(separate, c) for c in causes}
     titles = {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in causes}
-    found = [(title, own) for title, own in titles.items() if own is not None]
-    return dict(found[:MOST_CAUSES])
+    shared = [(title, amplitudes) for title, amplitudes in titles.items() if amplitudes is not None]
+    return dict(shared[:MOST_CAUSES])
 
 
-def _sizes_apart(apart: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
+def _sizes_apart(separate: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
     """Sizes in units that were diagnosed each by itself, over the largest."""
     none = none_of(cause)
-    own = [{c.id: c for c in j.causes}.get(cause.id) for j in apart.decisions.values() if j]
-    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in own]
+    in_units = [{c.id: c for c in j.causes}.get(cause.id) for j in separate.decisions.values() if j]
+    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in in_units]
     size, std = np.array(pairs).T
     whole = max(size - none, key=abs)
-    split = sum(c.id == cause.id for c in apart.decision.causes) > 1 or None in own
+    split = sum(c.id == cause.id for c in separate.decision.causes) > 1 or None in in_units
     return UnitAmplitudes((size - none) / whole, std / abs(whole), inf if split else 0.0)
 
 
 def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
     """One panel per cause: 1 is the mean size, or the largest, 0 nothing."""
-    apart = shown.analysis.apart
+    separate = shown.analysis.apart
     names = plain_names(
-        tuple(n for n, j in apart.decisions.items() if j)
-        if apart
+        tuple(n for n, j in separate.decisions.items() if j)
+        if separate
         else shown.explained.prepared.sweep.units
     )
     height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM
@@ -84,5 +84,5 @@ def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmpli
             thin_labels(axes)
             axes.grid(axis="y")
         axes.set_xlabel("unit under test")
-        titled(figure, 1 - 0.28 / height, "Effects common to all units, and of single units")
+        titled(figure, 1 - 0.28 / height, "Effects in all units and in single units")
         save_png(figure, path)

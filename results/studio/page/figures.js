@@ -47,17 +47,17 @@ export class Figures {
 
   // The answers that belong to one design, and no other's.
   of(number) {
-    const own = (row) => (this.numbers[row.key] === number ? row : waiting(row));
+    const known = (row) => (this.numbers[row.key] === number ? row : waiting(row));
     const whole = this.numbers[DRAWN] === number ? this.now : { budget: null, line: null };
     const gear = this.numbers[GEAR] === number ? this.now.gear : null;
-    return { stiffness: this.now.stiffness.map(own), peaks: this.now.peaks.map(own), budget: whole.budget, line: whole.line, gear };
+    return { stiffness: this.now.stiffness.map(known), peaks: this.now.peaks.map(known), budget: whole.budget, line: whole.line, gear };
   }
 
   stale(key) {
     return this.numbers[key] !== state.number;
   }
 
-  // Of a design that cannot be built there are no figures: those of the last one that can, and of no third.
+  // If the design cannot be built, only figures of the last design that can be built are shown.
   shown() {
     const { now, pinned, solid } = this;
     if (!state.broken) return { now, pinned, solid };
@@ -94,7 +94,7 @@ export class Figures {
     this.drawGear(now.gear, pinned?.gear);
   }
 
-  // Why there is none of the design as it stands.
+  // Why the present design has no whole-gear figures.
   withoutGear({ number, text }) {
     this.noGear = { number, text };
     this.draw();
@@ -105,7 +105,7 @@ export class Figures {
     this.gear.replaceChildren();
     if (this.noGear && this.noGear.number === state.number) {
       this.gear.className = "";
-      this.gear.append(this.heading("Whole gear, wave generator locked", ""), el("p", { class: "limit" }, `Not found: ${this.noGear.text}`));
+      this.gear.append(this.heading("Whole gear, wave generator locked", ""), el("p", { class: "limit" }, `Not computed: ${this.noGear.text}`));
     } else if (gear) this.gear.append(this.heading("Whole gear, wave generator locked", ""), ...gearPanel(gear, pinned));
   }
 
@@ -114,9 +114,9 @@ export class Figures {
     const row = (key) => [...stiffness, ...peaks].find((entry) => entry.key === key);
     const cell = (head, unit, text, key, without) => el("div", { class: this.stale(key) ? "stale" : "" },
       el("dt", {}, head, unit ? ` ${unit}` : ""), el("dd", {}, text ?? "…"), without ? el("dd", { class: "limit" }, without) : "");
-    const found = BRIEF.map((key) => row(key)).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key, entry.without));
+    const cells = BRIEF.map(row).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key, entry.without));
     const total = budget?.rows.find((entry) => entry.key.endsWith("total"));
-    document.getElementById("brief").replaceChildren(...found, cell("Backlash", "arcsec", total?.text, DRAWN));
+    document.getElementById("brief").replaceChildren(...cells, cell("Backlash", "arcsec", total?.text, DRAWN));
   }
 
   heading(text, unit) {
@@ -131,8 +131,8 @@ export class Figures {
   head(third) {
     const cells = [el("th", { colspan: 2 }), el("th", {}, "fast model")];
     if (!this.narrow) cells.push(el("th", {}, third));
-    if (this.seen.solid) cells.push(el("th", {}, this.seen.solid.old ? "solid, of earlier" : "solid"));
-    if (this.seen.pinned) cells.push(el("th", {}, "to pinned"));
+    if (this.seen.solid) cells.push(el("th", {}, this.seen.solid.old ? "solid, earlier" : "solid"));
+    if (this.seen.pinned) cells.push(el("th", {}, "vs. pinned"));
     return el("thead", {}, el("tr", {}, ...cells));
   }
 
@@ -159,9 +159,9 @@ export class Figures {
   }
 
   solidCell(row, part) {
-    const found = this.seen.solid[part].find((other) => other.key === row.key);
-    const cell = el("td", { class: `value solid ${this.seen.solid.old ? "stale" : ""}`, title: found?.bounds }, found?.text ?? "");
-    if (found?.bounds) cell.append(el("br"), el("span", { class: "limit" }, found.bounds));
+    const solved = this.seen.solid[part].find((other) => other.key === row.key);
+    const cell = el("td", { class: `value solid ${this.seen.solid.old ? "stale" : ""}`, title: solved?.bounds }, solved?.text ?? "");
+    if (solved?.bounds) cell.append(el("br"), el("span", { class: "limit" }, solved.bounds));
     return cell;
   }
 

@@ -1,4 +1,4 @@
-// The whole gear: its figures, who yields how much, and its curve.
+// The whole gear: its figures, shares of the compliance, and its curve.
 
 import { differenceCell, dot, frame, stack } from "./charts.js";
 import { el, svg, symbol } from "./dom.js";
@@ -17,14 +17,14 @@ export function gearPanel(gear, pinned) {
     shares(gear.shares),
     gear.line ? whole(gear, pinned?.line) : null,
     ...gear.warnings.map((line) => el("p", { class: "fault" }, `${line}.`)),
-    gear.assumed.length ? el("p", { class: "limit" }, `Assumed, as the design does not state it: ${gear.assumed.join(", ")}.`) : null,
+    gear.assumed.length ? el("p", { class: "limit" }, `Assumed, because the design does not state it: ${gear.assumed.join(", ")}.`) : null,
   ].filter(Boolean);
 }
 
 function shares(parts) {
   const words = parts.map((part) => `${part.name} ${Math.round(100 * part.value)} %`).join(", ");
   const names = parts.map((part) => el("span", { class: "share" }, dot(part.colour), ` ${part.name} ${Math.round(100 * part.value)} % `));
-  return el("div", { class: "budget" }, stack(parts, 1, `Compliance: ${words}`), el("p", { class: "limit" }, "Of the compliance at rated torque: ", ...names));
+  return el("div", { class: "budget" }, stack(parts, 1, `Compliance: ${words}`), el("p", { class: "limit" }, "Shares of the compliance at rated torque: ", ...names));
 }
 
 // θ(T) from 0 to rated torque; the other way round it is the same.

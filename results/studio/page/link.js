@@ -2,7 +2,7 @@
 
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 3000;
-const SILENCE_MS = 15000; // every design is answered at once; after a sleep of the machine nothing comes, and nothing says so
+const SILENCE_MS = 15000; // every design is answered at once; after a sleep of the machine no answer and no error comes
 
 export class Link {
   constructor({ opened, lost, note, bytes }) {

@@ -14,7 +14,7 @@ import { Work } from "./work.js";
 const MB = 1e6;
 const JSON_TYPE = "application/json";
 const LOST = "Connection lost. Trying again; the design in this tab is kept.";
-const REFUSED = "The server was started again and does not know this browser yet: open the address that it printed in another tab. The design in this tab is kept.";
+const REFUSED = "The server was restarted and does not know this browser yet: open the printed address in another tab. The design in this tab is kept.";
 const notice = document.getElementById("notice");
 const title = document.getElementById("name");
 follow(document.getElementById("theme"));
@@ -27,7 +27,7 @@ if (before?.good) {
     opened = await ask("open", JSON.stringify(before.good), JSON_TYPE);
     Object.assign(state, { view: before.view, pinned: before.pinned });
   } catch {
-    say("The design of this tab is no longer accepted; the server's own is shown.");
+    say("The design of this tab is no longer accepted; the design of the server is shown instead.");
   }
 }
 
@@ -38,7 +38,7 @@ const works = {};
 for (const [kind, words, tip] of [
   ["solid", "Solve with holes (solid model)", "Tetrahedra, refined until the tolerance is met"],
   ["step", "STEP", "Both parts as CAD files"],
-  ["report", "Report", "The whole run with the solid model: report.pdf, and report.html to turn"],
+  ["report", "Report", "Full run with the solid model: report.pdf, and report.html with 3-D views"],
 ]) works[kind] = new Work({ kind, words, title: tip, start: startWork, stop: stopWork, done: (note, line) => finished(kind, note, line) });
 const measured = new Measured(document.getElementById("measured"), started.largest_bytes.measured / MB, {
   upload: (file) => ask(`measured/${link.tab}`, file, "text/csv"), start: startWork, stop: stopWork, address });
@@ -115,7 +115,7 @@ function send() {
   link.say({ do: "want", number: state.number, tables: state.tables, view: state.view });
 }
 
-// Every figure and picture says, by its looks, whether it is of the design as it stands.
+// Every figure and picture is grey unless it belongs to the present design.
 function mark() {
   whatIsOld();
   pins.compare();
@@ -123,7 +123,7 @@ function mark() {
   stage.mark();
 }
 
-// A text that is no number: the design as it stands has no figures.
+// A text that is no number: the present design has no figures.
 function broke() {
   state.number += 1;
   state.broken = true;

@@ -6,15 +6,15 @@ import { Work } from "./work.js";
 const KINDS = [
   ["Torque sweep", "torque_Nm, angle_arcsec", "unit, cycle, time_s, temperature_C, input_angle_deg",
     "friction, hardening, clearance, drift, wear, creep, lag, errors of position"],
-  ["End points", "unit, torque_Nm, angle_plus_arcsec, angle_minus_arcsec", "", "which units lie beyond the prediction, and what could explain it"],
+  ["End points", "unit, torque_Nm, angle_plus_arcsec, angle_minus_arcsec", "", "which units lie beyond the prediction, and possible causes"],
   ["Specimens", "specimen, stiffness_Nm_per_rad", "stiffness_std_Nm_per_rad, part, any design key",
-    "material, a dimension off its drawing, where load enters"],
+    "material, a dimension that differs from the drawing, where the load enters"],
 ];
 
 function guide() {
   const names = (text) => text.split(", ").flatMap((name, i) => [i ? ", " : "", name.includes(" ") ? name : el("code", {}, name)]);
-  const heads = ["Measurement", "Columns", "If there", "Can show"];
-  return el("section", { id: "guide" }, el("h3", {}, "What the columns say"),
+  const heads = ["Measurement", "Columns", "Optional", "Can show"];
+  return el("section", { id: "guide" }, el("h3", {}, "Columns of the file"),
     el("table", { class: "causes" }, el("thead", {}, el("tr", {}, ...heads.map((head) => el("th", {}, head)))),
       el("tbody", {}, ...KINDS.map(([kind, needed, optional, shows]) => el("tr", {}, el("td", {}, kind),
         el("td", {}, ...names(needed)), el("td", {}, ...(optional ? names(optional) : [])), el("td", {}, shows))))),
@@ -25,7 +25,7 @@ export class Measured {
   // largestMB: of a file. upload(file): sends the bytes; start, stop as for any work; address(name): of a file that was made.
   constructor(root, largestMB, { upload, start, stop, address }) {
     Object.assign(this, { root, largestMB, upload, address });
-    this.work = new Work({ kind: "diagnose", words: "Diagnose again", title: "With the design as it stands now",
+    this.work = new Work({ kind: "diagnose", words: "Diagnose again", title: "With the present design",
       start, stop, done: (note) => this.show(note), said: (text) => text.replaceAll("measured.csv", this.file?.name ?? "") });
     this.work.button.hidden = true;
     this.name = el("span", { class: "limit" });
@@ -74,7 +74,7 @@ export class Measured {
     const list = (title, entries) => (entries.length ? [el("h3", {}, title), el("ul", {}, ...entries.map((line) => el("li", {}, line)))] : []);
     const causes = d.causes.map((c) => el("tr", {}, el("td", {}, c.title), el("td", { class: "value" }, c.magnitude),
       el("td", {}, c.sure), el("td", {}, c.others || "")));
-    const heads = ["Cause", "Magnitude", "How sure", d.causes.some((c) => c.others) ? "Not distinguished from" : ""];
+    const heads = ["Cause", "Magnitude", "Confidence", d.causes.some((c) => c.others) ? "Not distinguished from" : ""];
     const keep = files.filter((name) => !name.endsWith(".png"));
     this.findings.replaceChildren(
       el("h2", { id: "verdict" }, d.verdict),
@@ -86,7 +86,7 @@ export class Measured {
       d.gain ? el("p", {}, d.gain) : "",
       ...(d.next ? [el("h3", {}, "Measure next"), el("p", { id: "next" }, `${d.next[0]}: ${d.next[1]}`)] : []),
       ...list("Notes", d.notes),
-      el("p", { class: "files" }, "Keep: ", ...keep.map((name) => el("a", { href: this.address("diagnose", name), download: name }, name))),
+      el("p", { class: "files" }, "Download: ", ...keep.map((name) => el("a", { href: this.address("diagnose", name), download: name }, name))),
       el("div", { class: "figures" }, ...files.filter((name) => name.endsWith(".png")).map((name) =>
         el("img", { src: `${this.address("diagnose", name)}?${Date.now()}`, alt: name.replace(".png", "").replaceAll("_", " ") }))));
   }

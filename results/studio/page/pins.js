@@ -29,11 +29,11 @@ export class Pins {
   compare() {
     this.list.hidden = !state.pinned || state.broken;
     if (this.list.hidden) return;
-    const found = differences(state.pinned.tables, state.good);
-    if (!found.length) this.figures.pinned = state.pinned.answer = structuredClone(this.figures.of(state.goodNumber));
+    const dimensions = differences(state.pinned.tables, state.good);
+    if (!dimensions.length) this.figures.pinned = state.pinned.answer = structuredClone(this.figures.of(state.goodNumber));
     const text = (value) => (value === undefined ? "absent" : typeof value === "object" ? Object.values(value).join(", ") : String(value));
     this.list.replaceChildren(el("h2", {}, el("span", {}, "Pinned: ", el("bdi", {}, state.pinned.tables.name))),
-      found.length ? el("table", {}, el("tbody", {}, ...found.map(({ key, before, after }) =>
+      dimensions.length ? el("table", {}, el("tbody", {}, ...dimensions.map(({ key, before, after }) =>
         el("tr", {}, el("td", {}, key), el("td", { class: "value" }, text(before)), el("td", {}, "→"), el("td", { class: "value" }, text(after))))))
         : el("p", { class: "limit" }, "No dimension differs."));
   }

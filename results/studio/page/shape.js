@@ -148,8 +148,8 @@ export function creases(shape, { open, deformed }) {
   const out = new Float32Array(6 * steps * sharp.length);
   for (let s = 0, at = 0; s < steps; s++) {
     for (const step of [s, s + 1]) {
-      const here = moved((((open ? OPEN : 2 * Math.PI) * step) / steps));
-      sharp.forEach((node, k) => here.place(node, out, at + 6 * k + (step === s ? 0 : 3)));
+      const ring = moved((((open ? OPEN : 2 * Math.PI) * step) / steps));
+      sharp.forEach((node, k) => ring.place(node, out, at + 6 * k + (step === s ? 0 : 3)));
     }
     at += 6 * sharp.length;
   }

@@ -117,7 +117,7 @@ export class Stage {
   }
 
   say(leftOut, warnings, w0) {
-    this.left = leftOut.length ? `Left out of the fast model: ${leftOut.join(", ")}. ` : "";
+    this.left = leftOut.length ? `Not in the fast model: ${leftOut.join(", ")}. ` : "";
     this.warnings = warnings;
     this.w0 = w0;
     this.beyond = [];
@@ -134,7 +134,7 @@ export class Stage {
     const seat = this.view === "wave_generator" ? `Seat, as wide as the ring and cylindrical, moved radially by w₀ cos 2φ, w₀ = ${grouped(this.w0 ?? 0, 3)} mm. ` : "";
     this.caption.replaceChildren(
       el("p", {}, seat, this.magnified ?? ""),
-      this.left ? el("p", { id: "left-out", class: "note" }, this.left, "“Solve with holes” answers with them.") : "",
+      this.left ? el("p", { id: "left-out", class: "note" }, this.left, "“Solve with holes” includes them.") : "",
       ...(this.warnings ?? []).map((line) => el("p", { class: "warning" }, `Unusual: ${line}`)),
       ...(this.beyond ?? []).map((line) => el("p", { class: "warning" }, line)));
   }

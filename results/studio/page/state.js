@@ -6,9 +6,9 @@ export const state = {
   tables: null, // as sent; may be refused
   good: null, // the last that was accepted
   view: "wave_generator",
-  number: 0, // of the design as it stands: it grows with every change
+  number: 0, // of the present design: it grows with every change
   goodNumber: 0, // of `good`
-  broken: false, // the design as it stands cannot be built
+  broken: false, // the present design cannot be built
   pinned: null, // { tables, answer }
 };
 

@@ -1,4 +1,4 @@
-// The middle: the part in 3-D. It is drawn here, in the browser, so it turns without asking anybody.
+// The middle: the part in 3-D. The browser draws it, so turning needs no request.
 
 import { PartScene } from "./part_scene.js";
 import { creases, mover, revolved } from "./shape.js";
@@ -43,8 +43,8 @@ export class View extends PartScene {
     const [r, z] = [Math.hypot(at[0], at[1]), at[2]];
     let near = 0;
     for (let i = 0, best = Infinity; i < places.length / 2; i++) {
-      const apart = (places[2 * i] - r) ** 2 + (places[2 * i + 1] - z) ** 2;
-      if (apart < best) [best, near] = [apart, i];
+      const distance = (places[2 * i] - r) ** 2 + (places[2 * i + 1] - z) ** 2;
+      if (distance < best) [best, near] = [distance, i];
     }
     const out = [0, 0, 0];
     const angle = Math.atan2(at[1], at[0]);

@@ -112,7 +112,7 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
     found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
     assert found.verdict == "consistent"
     assert "but the gap" in summary(found)
-    assert "3.5 of its stated deviations" in summary(found)
+    assert "3.5 stated standard deviations" in summary(found)
     table = " ".join(diagnosis_table(found, tmp_path).split())
     assert "agree" not in table
     assert "No effect" not in table
@@ -138,7 +138,7 @@ def test_one_unit_with_a_gap_far_off_is_said_beside_others_that_agree(tmp_path: 
     found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
     said = summary(found)
     assert "gap of unit D" in said
-    assert " 5.0 of its stated deviations" in said
+    assert " 5.0 stated standard deviations" in said
     assert "unit A" not in said
     (softer,) = [n for n in notes(found) if n.startswith("difference of each unit's compliance")]
     each = {

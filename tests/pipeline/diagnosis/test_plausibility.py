@@ -125,7 +125,7 @@ def test_interchanged_columns_of_a_stiff_gear_are_refused(tmp_path: Path) -> Non
 
 def test_where_no_gap_shows_interchanged_columns_are_asked_for(tmp_path: Path) -> None:
     found = diagnose_file(LARGE, large_record(tmp_path, True, both_sides=False), LARGE_K, LARGE_K)
-    assert "with torque and angle interchanged it would be near" in summary(found)
+    assert "with torque and angle interchanged it would be close" in summary(found)
     found = diagnose_file(LARGE, large_record(tmp_path, False, both_sides=False), LARGE_K, LARGE_K)
     assert "interchanged" not in summary(found)
 

@@ -33,4 +33,4 @@ def test_end_points_keep_to_it_too(rated: float | None, most: float) -> None:
         assert plan.history.largest_Nm <= most
         if rated is not None and rated < 10.0 and plan.doing.kind == "closed_sweeps":
             said = doing_words(plan.doing)
-            assert "no further: the record itself exceeds the rated torque of 5 N·m" in said
+            assert "not beyond: the record already exceeds the rated torque of 5 N·m" in said

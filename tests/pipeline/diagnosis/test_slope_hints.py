@@ -242,7 +242,9 @@ def test_interchanged_columns_are_asked_for_beside_a_rig_s_fault(
         late = Unexplained("torque_rate", 5.0, 0.0, fault)
         outcome = DiagnosisOutcome("unknown", (), (late,))
         found[swapped] = summary(replace(diagnosis, outcome=outcome))
-    assert found[True].endswith("interchanged it would be near: check the columns.")
+    assert found[True].endswith(
+        "interchanged it would be close to the simulated one: check the columns."
+    )
     assert "interchanged" not in found[False]
     assert "--against gear" not in found[False]
 

@@ -26,7 +26,10 @@ def diagnosis() -> Diagnosis:
 
 @pytest.mark.parametrize(
     ("share", "words"),
-    [(0.0, "of this bend nothing is in this record"), (0.25, "of this bend up to 3 arcsec is in")],
+    [
+        (0.0, "contains nothing of this deviation"),
+        (0.25, "contains up to 3 arcsec of this deviation"),
+    ],
 )
 @pytest.mark.parametrize("cause", [None, HARDER])
 def test_a_record_without_the_bend_is_not_said_to_be_straight(

@@ -21,9 +21,9 @@ from flexspline.results.diagnosis.data_used import calibrated_sentences
 @pytest.mark.parametrize(
     ("gap_arcsec", "std_arcsec", "words"),
     [
-        (62.0, 9.0, "62.0 ± 9.0 (as simulated: this record does not narrow it)"),
+        (62.0, 9.0, "62.0 ± 9.0 (as simulated: this record does not reduce the uncertainty)"),
         # two stated deviations of 10 off the simulated 60: not as simulated
-        (40.0, 9.0, "40.0 ± 9.0 (simulated 60 ± 10; this record does not narrow it)"),
+        (40.0, 9.0, "40.0 ± 9.0 (simulated 60 ± 10; this record does not reduce the uncertainty)"),
         # surely another one, though not known any better
         (20.0, 9.0, "20.0 ± 9.0 (simulated 60 ± 10, −4.0 standard deviations)"),
         (40.0, 2.0, "40.0 ± 2.0 (simulated 60 ± 10, −2.0 standard deviations)"),
@@ -55,7 +55,7 @@ def test_an_error_says_how_far_the_calibration_went(tmp_path: Path) -> None:
     lines = {
         words: float(line.split()[-1])
         for line in diagnosis_table(found, tmp_path).splitlines()
-        for words in ("within 2 stated deviations", "without that limit", "noise of the held-out")
+        for words in ("within 2 stated deviations", "without this limit", "noise of the held-out")
         if words in line
     }
     within, free, noise = lines.values()

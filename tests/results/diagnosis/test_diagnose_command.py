@@ -244,7 +244,7 @@ def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -
     hat = EXAMPLES / "hat-25.toml"
     result = flexspline("predict", hat, "--model", model, SWEEP, "--out", tmp_path)
     assert result.exit_code == 0
-    assert "the model is of XB1-40 cup, not of" in result.stderr
+    assert "the model is for XB1-40 cup, not for" in result.stderr
 
 
 def test_run_shows_the_added_terms(
@@ -325,4 +325,4 @@ def test_who_stops_a_diagnosis_reads_what_is_kept(
     monkeypatch.setattr("flexspline.results.diagnosis.diagnose.diagnose_and_write", stopped)
     ended = flexspline("diagnose", CUP, SWEEP, "--out", tmp_path)
     assert ended.exit_code == 130
-    assert "stiffnesses solved are kept, the diagnosis starts from the beginning" in ended.stderr
+    assert "solved stiffnesses are kept, the diagnosis starts from the beginning" in ended.stderr

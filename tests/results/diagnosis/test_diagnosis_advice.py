@@ -33,7 +33,7 @@ def test_nothing_is_asked_for_that_a_rig_cannot_do(channel: str) -> None:
     """With the wave generator locked the output angle is the answer: it cannot be varied alone."""
     form = (UnnamedForm("ripple" if channel == "angle_arcsec" else "leading"),)
     said = why(NextMeasurement(channel, "find_structure", structure=form), "sweep")
-    assert "vary it alone" not in said
+    assert "vary only this channel" not in said
     assert "housing" in said or "hold it" in said
 
 
@@ -45,7 +45,7 @@ def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
         calibration, prediction, DiagnosisOutcome("unknown", unexplained=(left,))
     )
     assert calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent")) in unknown
-    assert "unexplained; it may have changed them" in unknown
+    assert "An unexplained effect may have changed these values" in unknown
 
 
 def test_an_elastic_cause_makes_the_calibrated_compliance_a_part_of_the_slope() -> None:
@@ -69,7 +69,7 @@ def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
     calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
     assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
-    assert "as simulated: this record does not narrow it" in said
+    assert "as simulated: this record does not reduce the uncertainty" in said
 
 
 def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
@@ -78,8 +78,8 @@ def test_a_slope_that_a_compliance_does_not_have_is_said_beside_it() -> None:
     held = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
     found = DiagnosisOutcome("unknown")
     said = calibrated_sentences(held, prediction, found, SlopeRatio(0.154, 0.153, 0.155))
-    assert "does not narrow" not in said
-    assert "6.49 times stiffer: a straight line through it has a slope of 1.54" in said
+    assert "does not reduce" not in said
+    assert "6.49 times stiffer: a straight line through the record has a slope of 1.54" in said
     # a compliance that follows the slope says it by itself
     moved = Calibration(Estimate(70.0, 0.1), True, Estimate(8.6, 0.05))
     said = calibrated_sentences(moved, prediction, found, SlopeRatio(0.86, 0.85, 0.87))
@@ -99,7 +99,7 @@ def test_the_next_measurement_names_a_cause_as_the_verdict_does(percent: float, 
 @pytest.mark.parametrize(
     ("separation", "said"),
     [
-        (3.0, "; it distinguishes"),
+        (3.0, "; this distinguishes"),
         (0.4, "about 50 such specimens are needed to distinguish"),  # 8 / 0.4²
         (0.1, "too little to distinguish"),
     ],
@@ -120,7 +120,7 @@ def test_nothing_found_is_not_calibrated_beside_effects() -> None:
     calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.01))
     prediction = Prediction(10.0, 0.3, 70.0, 10.0)
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
-    assert "without the effects found" not in said
+    assert "without the other effects" not in said
 
 
 def test_a_gap_beside_the_clearance_found_is_not_called_open() -> None:
@@ -129,5 +129,5 @@ def test_a_gap_beside_the_clearance_found_is_not_called_open() -> None:
     calibration = Calibration(Estimate(71.0, 9.9), True, Estimate(10.0, 0.01))
     prediction = Prediction(10.0, 0.3, 70.0, 10.0)
     said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("named", (found,)))
-    assert "does not narrow" not in said
+    assert "does not reduce" not in said
     assert "the difference counts as clearance other than simulated" in said

@@ -164,7 +164,7 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     loop, load = page["causes"]
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
     assert loop["magnitude"] == "12.00 ± 0.50 arcsec wide at T = 0"
-    assert load["sure"] == "something is there, its size is not known"
+    assert load["sure"] == "an effect exists, its size is not known"
 
 
 def test_two_that_stand_for_each_other_are_said_once() -> None:

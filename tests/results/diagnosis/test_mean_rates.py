@@ -38,12 +38,12 @@ def worn(path: Path, share: np.ndarray) -> Diagnosis:
 def test_wear_that_levels_off_is_said_to_have_a_mean_rate(tmp_path: Path) -> None:
     cycle = np.arange(CYCLES)
     said = " ".join(notes(worn(tmp_path / "a.csv", 1 - np.exp(-cycle / 2.0))))
-    assert "mean over the record; it levels off" in said
+    assert "mean over the record; the growth levels off" in said
 
 
 def test_steady_wear_needs_no_such_word(tmp_path: Path) -> None:
     said = " ".join(notes(worn(tmp_path / "a.csv", np.arange(CYCLES) / (CYCLES - 1))))
-    assert "it levels off" not in said
+    assert "the growth levels off" not in said
 
 
 def test_creep_s_share_is_of_the_last_decade_of_a_hold() -> None:

@@ -59,7 +59,7 @@ def test_a_file_without_digests_is_compared_by_name(tmp_path: Path) -> None:
     old = replace(ORIGIN, design_digests={})
     assert said(tmp_path, old) == ()
     (line,) = said(tmp_path, replace(old, design="another"))
-    assert line.startswith(f"the model is of another, not of {DESIGN.name}; ")
+    assert line.startswith(f"the model is for another, not for {DESIGN.name}; ")
 
 
 def test_an_open_verdict_is_told_with_its_rivals(tmp_path: Path) -> None:
@@ -90,4 +90,4 @@ def test_a_rate_without_time_is_told(tmp_path: Path) -> None:
         text = model_text(rate, replace(ORIGIN, time_recorded=timed))
         path.write_text(text, encoding="utf-8")
         told = model_warnings(read_model_file(path), DESIGN)
-        assert any("counts a row as a second" in line for line in told) == (not timed)
+        assert any("takes one row as one second" in line for line in told) == (not timed)

@@ -38,7 +38,7 @@ def test_an_ambiguous_summary_says_the_sure_causes_too(kind: str) -> None:
     both = DiagnosisOutcome("ambiguous", (FRICTION, WEAR))
     said = summary(Diagnosis(DESIGN, KINDS[kind], prediction, both))
     assert (
-        "cannot tell what: wear (gap that grows from cycle to cycle) cannot be distinguished from"
+        "do not show which: wear (gap that grows from cycle to cycle) cannot be distinguished from"
         in said
     )
     assert said.endswith(
@@ -57,7 +57,7 @@ def test_a_panel_says_what_the_model_holds_without_a_name() -> None:
     wave = Unexplained("time_s", 1.3, 1e-6, (UnnamedForm("wave"),))
     assert residual_words(tests, [wave]) == {
         "torque_Nm": "no further structure",
-        "time_s": "fitted without a name, 1.3 arcsec",
+        "time_s": "fitted, no cause known, 1.3 arcsec",
         "cycle": "structure left, 0.8 arcsec",
     }
     assert residual_words(tests, [])["torque_Nm"] == "no structure left"

@@ -38,7 +38,11 @@ def test_every_nuisance_term_has_words() -> None:
         for term in nuisance_terms(RIG)
         for rows in (False, True)
     }
-    assert {"a gap of unit 2's own", "a step in time of unit 1", "a wave along the record"} <= said
+    assert {
+        "a separate gap of unit 2",
+        "a step in time of unit 1",
+        "a wave along the record",
+    } <= said
 
 
 def test_several_forms_are_said_in_one_order() -> None:

@@ -18,7 +18,7 @@ HARDENING = NamedCause("stiffness_hardening", 0.99, (), 1.03, 0.02, "1", 12.0, 4
     [
         (DRIFT, "beyond doubt, size uncertain"),  # 1.8 deviations from none
         (replace(DRIFT, magnitude_std=5.0), "beyond doubt"),
-        (replace(DRIFT, magnitude_std=31.0), "something is there, its size is not known"),
+        (replace(DRIFT, magnitude_std=31.0), "an effect exists, its size is not known"),
         (HARDENING, "beyond doubt, size uncertain"),  # a ratio of 1 is no hardening
         (replace(HARDENING, magnitude=1.2), "beyond doubt"),
         (replace(DRIFT, alternatives=("creep",)), "not decided"),

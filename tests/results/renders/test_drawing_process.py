@@ -70,7 +70,7 @@ def test_an_error_names_itself_and_ends_nothing() -> None:
 
 def test_a_full_disk_is_a_line(monkeypatch) -> None:
     def full(*_: object) -> None:
-        raise OSError(28, "No space left on device", "/tmp/asked.npz")
+        raise OSError(28, "No space left on device", "/tmp/arguments.npz")
 
     with DrawingProcess() as process:
         monkeypatch.setattr(Path, "write_bytes", full)

@@ -4,11 +4,11 @@ import pytest
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
+from written_report import write_report
 
 from flexspline.results.report.missing_letters import font_folder, printable
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 
 CHINESE = "谐波减速器 柔轮"
 PRINTED = {
@@ -42,7 +42,7 @@ def test_letters_without_a_font_are_replaced_and_said(tmp_path, bare):
     text = pdf_letters(tmp_path / "r.pdf")
     assert empty_boxes(tmp_path / "r.pdf") == 0
     assert "".join(f"[U+{ord(c):04X}]" for c in CHINESE.split()[-1]) in text
-    assert letters("7 different letters of names or notes cannot be printed") in text
+    assert letters("7 different letters in names or notes cannot be printed") in text
     assert not set(CHINESE.replace(" ", "")) & set(text)
     assert CHINESE in PdfReader(tmp_path / "r.pdf").metadata.title
     shown, _, _ = read_page(page_of(run_document(made), {}).decode())

@@ -7,6 +7,7 @@ import pytest
 from blank_pictures import blank_pictures
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page, spans, strings
+from written_report import payload, write_report
 
 from flexspline.results.report.content import ExtendedSum
 from flexspline.results.report.document import Document, Heading, Paragraph
@@ -14,7 +15,6 @@ from flexspline.results.report.page import page_of, png
 from flexspline.results.report.payload import payload_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import ref
-from flexspline.results.report.write import payload, write_report
 
 NASTY = [
     '#read("/etc/passwd")',

@@ -10,6 +10,7 @@ from example_files import EXAMPLES
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
+from written_report import write_report
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
@@ -18,7 +19,6 @@ from flexspline.results.report.dimensions import ratio
 from flexspline.results.report.issued import issued
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import write_report
 
 NASTY = (
     "../../etc/passwd", 'a"b<c>&d.toml', "#read(1).toml", "名前.toml", ".hidden", "a\nb.toml", "x" * 300,

@@ -173,7 +173,7 @@ def test_a_server_killed_and_started_again_is_found(
         page.field("flexspline.length_mm").fill("31")
         second = start(studio.design, "--port", str(studio.port), temporary=studio.temporary)
         studio.process = second.process
-        page.at("#notice:has-text('open the address that it printed')").wait_for()
+        page.at("#notice:has-text('open the printed address')").wait_for()
         page.context.new_page().goto(second.url)  # its cookie is the first tab's too
         page.at("#notice:has-text('Connected again')").wait_for()
         page.quick()

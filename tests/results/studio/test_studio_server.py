@@ -102,7 +102,7 @@ def test_a_port_that_another_program_has_is_one_line() -> None:
             capture_output=True, text=True, check=False, timeout=60,
         )  # fmt: skip
     assert done.returncode == 2
-    assert "another program does; --port 0" in done.stderr
+    assert "another program uses this port; --port 0" in done.stderr
     assert done.stderr.count("\n") == 1
 
 

@@ -89,7 +89,7 @@ def test_a_grid_and_its_resumption(tmp_path: Path, nothing_drawn: Callable[[], N
         app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
     )
     assert again.exit_code == 0
-    assert "4 designs are finished already" in again.stderr
+    assert "4 designs are already finished" in again.stderr
     assert rows_of(tmp_path / "1") == rows
 
 

@@ -17,7 +17,7 @@ from flexspline.pipeline.study.verified import Verified
 from flexspline.results.cli import app
 from flexspline.results.report.payload import payload_of
 from flexspline.results.study.failures import (
-    TOLD,
+    LISTED_REASONS,
     causes,
     contradiction,
     failure_lines,
@@ -84,9 +84,9 @@ def test_report_terminal_and_json_say_the_same() -> None:
 
 
 def test_many_causes_are_cut_and_counted() -> None:
-    letters = [chr(ord("a") + i) for i in range(TOLD + 2)]
+    letters = [chr(ord("a") + i) for i in range(LISTED_REASONS + 2)]
     lines = list(failure_lines(result_of(*(Outcome(faults=(letter,)) for letter in letters))))
-    assert len(lines) == 1 + TOLD + 1
+    assert len(lines) == 1 + LISTED_REASONS + 1
     assert "and 2 more causes" in lines[-1]
     assert not list(failure_lines(result_of(Outcome({"K_b_Nm_per_rad": 1.0}))))
 

@@ -90,7 +90,7 @@ def test_a_lag_in_the_model_is_said(tmp_path: Path) -> None:
     assert lag is not None
     assert lag.shown
     (said,) = (n for n in notes(late) if "with a lag of" in n)
-    assert "in the model it follows the temperature reading with a lag of" in said
+    assert "in the model the gap follows the temperature with a lag of" in said
     assert "nearly as well" not in said
 
 

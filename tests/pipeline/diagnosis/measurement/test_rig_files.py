@@ -232,7 +232,7 @@ def test_the_header_again_is_passed_over_and_said(
     assert found.angle_arcsec == pytest.approx(ANGLE, abs=1e-5)
     assert found.read_as.heads_again == lines
     assert any(
-        f"header again or data types: line {lines[0]}" in note
+        f"repeated header or data types: line {lines[0]}" in note
         for note in reading_notes(found.read_as)
     )
 

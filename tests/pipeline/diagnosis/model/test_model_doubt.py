@@ -238,8 +238,8 @@ def test_small_loops_are_said_with_the_smallest_of_file_and_record() -> None:
     small = Deviation(np.ones(len(history)), {"torque_amplitude": 40})
     (line,) = map(beyond_words, extrapolated(small, span_of(RECORD), history))
     assert line == (
-        f"40 of {len(history)} rows are in cycles smaller than the smallest measured: the smallest of this "
-        "file reaches 1 N·m, that of the model's record 2 N·m; the friction of small loops is less certain, "
+        f"40 of {len(history)} rows are in cycles smaller than measured: the smallest cycle reaches 1 N·m "
+        "in this file and 2 N·m in the model's record; the friction of small loops is less certain, "
         "so their standard deviations are larger"
     )
 

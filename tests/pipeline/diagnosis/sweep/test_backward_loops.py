@@ -90,7 +90,7 @@ def test_a_late_torque_reading_is_said_with_its_delay(filtered: bool) -> None:
     assert delay == pytest.approx(DELAY_S, rel=0.1)
     assert outcome.next_measurement is not None
     assert outcome.next_measurement.vary == "torque_rate"
-    assert "one instant" in why(outcome.next_measurement, "sweep")
+    assert "the same time" in why(outcome.next_measurement, "sweep")
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_a_torque_cell_s_own_hysteresis_is_no_delay(
     outcome = said_of(read, angle)
     (left,) = outcome.unexplained
     assert isinstance(left.structure, BackwardLoop)
-    assert "torque cell has a hysteresis" in structure_words(left)
+    assert "torque cell itself has hysteresis" in structure_words(left)
     assert ("lags" in structure_words(left)) == likely
     assert outcome.next_measurement is not None
     assert ("weights" in why(outcome.next_measurement, "sweep")) != likely

@@ -111,7 +111,9 @@ def test_a_filter_of_the_angle_is_said_with_its_time(
     assert "would look the same" in said
     assert "loose key" in said
     assert outcome.next_measurement is not None
-    assert "filters of the torque and the angle channel" in why(outcome.next_measurement, "sweep")
+    assert "filters of the torque channel and the angle channel" in why(
+        outcome.next_measurement, "sweep"
+    )
 
 
 def test_a_delay_of_the_angle_is_told_at_one_rate_and_where_rates_differ() -> None:

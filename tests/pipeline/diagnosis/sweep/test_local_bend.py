@@ -73,7 +73,7 @@ def test_a_bend_of_one_side_is_told_with_its_size(
     assert form.more_arcsec == pytest.approx(twist[np.abs(twist).argmax()], abs=0.5)
     said = structure_words(outcome.unexplained[0])
     word = "positive" if side > 0 else "negative"
-    assert f"a bend of the curve at {word} torque alone" in said
+    assert f"a bend of the curve only at {word} torque" in said
     assert ("more twist" if twist.sum() > 0 else "less twist") in said
     assert holds_the_truth(calibration)
 

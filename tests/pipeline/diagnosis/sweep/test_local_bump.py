@@ -72,7 +72,7 @@ def test_a_bump_is_told_where_it_is(
     places = [form.at_Nm for form in first.structure if form.at_Nm is not None]
     for place, _, _ in bumps:
         assert min(abs(p - place) for p in places) < 0.03 * LARGEST_Nm
-    assert "a bump of the curve near" in structure_words(first)
+    assert "a bump in the curve near" in structure_words(first)
     calibration = diagnosis.calibration
     assert calibration is not None
     assert calibration.compliance is not None

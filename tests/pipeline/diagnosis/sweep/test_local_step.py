@@ -37,7 +37,7 @@ def test_a_step_is_told_where_it_is(at: list[tuple[float, float]]) -> None:
     (only,) = outcome.unexplained
     assert isinstance(only.structure, tuple)
     assert {form.kind for form in only.structure} == {"curve_step"}
-    assert "a step of the curve near" in structure_words(only)
+    assert "a step in the curve near" in structure_words(only)
     # between two torques, 0.15 N·m apart
     places = [form.at_Nm for form in only.structure if form.at_Nm is not None]
     assert sorted(places) == pytest.approx(sorted(place for place, _ in at), abs=0.15)

@@ -107,7 +107,7 @@ def test_the_gear_as_drawn_leaves_nothing_to_explain(as_drawn: Diagnosis) -> Non
     assert found.outcome == "consistent"
     assert "named" not in gear_inputs_record(found)
     (said,) = gear_inputs_notes(found)
-    assert said.endswith("no more than its readings scatter")
+    assert said.endswith("not more than the scatter of the readings")
 
 
 def test_an_input_that_moves_nothing_has_no_value(
@@ -119,7 +119,7 @@ def test_an_input_that_moves_nothing_has_no_value(
     found = identification.gear_inputs(DESIGN, chain, as_drawn.sweep)
     assert found is not None
     assert (found.outcome, found.fitted) == ("consistent", ())
-    assert "no more than its readings scatter" in gear_inputs_notes(found)[0]
+    assert "not more than the scatter of the readings" in gear_inputs_notes(found)[0]
     assert bent.sweep is not None
     found = identification.gear_inputs(DESIGN, chain, bent.sweep)
     assert found is not None
@@ -181,7 +181,7 @@ def test_two_inputs_that_both_changed_are_named_together(
     record = gear_inputs_record(found)
     assert "named" not in record
     assert {each["key"] for each in record["pairs"][0]["inputs"]} == set(found.pairs[0].keys)
-    assert "two together" in gear_inputs_notes(found)[0]
+    assert "two inputs together" in gear_inputs_notes(found)[0]
 
 
 def test_no_input_is_negative(chain: Chain) -> None:
