@@ -112,12 +112,12 @@ def _call(
     columns = 1 if b is None or b.ndim == 1 else b.shape[1]
     one, silent, error = _pointer(1), _pointer(0), ctypes.c_int32(0)
     data, starts, places = map(address, matrix) if matrix else (None,) * 3
-    right, found = (None if v is None else address(v) for v in (b, x))
+    right, solution = (None if v is None else address(v) for v in (b, x))
     of_caller = _set_threads(threads)
     pardiso()(
         address(pt), one, one, _pointer(SYMMETRIC_POSITIVE), _pointer(phase), _pointer(unknowns),
         data, starts, places, None, _pointer(columns), address(iparm), silent,
-        right, found, ctypes.byref(error),
+        right, solution, ctypes.byref(error),
     )  # fmt: skip
     _set_threads(of_caller)
     if error.value:

@@ -69,13 +69,13 @@ class ScaledEstimate:
     falls: tuple[float, float] | None = None
     """The range of q where each mesh follows the errors of the one before and has twice its elements."""
 
-    def add(self, found: MeshResult) -> None:
+    def add(self, result: MeshResult) -> None:
         """By one more mesh."""
-        self.meshes.append(found)
+        self.meshes.append(result)
 
-    def with_mesh(self, found: MeshResult) -> ScaledEstimate:
+    def with_mesh(self, result: MeshResult) -> ScaledEstimate:
         """What `add` makes of a copy."""
-        return replace(self, meshes=[*self.meshes, found])
+        return replace(self, meshes=[*self.meshes, result])
 
     @property
     def levels(self) -> tuple[MeshLevel, ...]:

@@ -20,28 +20,30 @@ class ToleranceError(ComputationError):
         super().__init__(f"{what}: {shortfall}")
 
 
-def settled(found: Stiffness) -> Stiffness:
+def settled(stiffness: Stiffness) -> Stiffness:
     """A stiffness within the tolerance that was asked for.
 
     Raises
     ------
     ToleranceError : it is not.
     """
-    if found.shortfall:
-        raise ToleranceError(f"K is known to ± {found.half_width:.2g} only", found.shortfall)
-    return found
+    if stiffness.shortfall:
+        raise ToleranceError(
+            f"K is known to ± {stiffness.half_width:.2g} only", stiffness.shortfall
+        )
+    return stiffness
 
 
-def settled_peak(found: StressPeak) -> StressPeak:
+def settled_peak(peak: StressPeak) -> StressPeak:
     """A peak that stays within its tolerance on finer meshes: it has no bounds to say how far it may move.
 
     Raises
     ------
     ToleranceError : nobody knows.
     """
-    if found.shortfall:
-        raise ToleranceError("the peak stress may still change", found.shortfall)
-    return found
+    if peak.shortfall:
+        raise ToleranceError("the peak stress may still change", peak.shortfall)
+    return peak
 
 
 def missing_because(fault: FlexsplineError | MemoryError) -> Shortfall:

@@ -76,20 +76,20 @@ def beside(
     A level of more digits is called by its name. `step` is the smallest that counts, `low` and `high` the
     ends of all; with `zero`, 0 is below `low`.
     """
-    found = []
+    ranges = []
     if low <= level <= high or (zero and level == 0):
         few = f"{level:.{DIGITS}g}"
-        found.append(f"{few} ({name})" if float(few) == level else f"exactly {name}")
+        ranges.append(f"{few} ({name})" if float(few) == level else f"exactly {name}")
     under = min(step_down(level, step), high)
     if zero and level >= step and under < LENGTH_mm.low:
-        found.append("0")
+        ranges.append("0")
     elif zero and level >= step:
-        found.append(from_zero(under))
+        ranges.append(from_zero(under))
     elif (part := lengths(low, under)) is not None:
-        found.append(part)
+        ranges.append(part)
     if (part := lengths(max(step_up(level, step), low), high)) is not None:
-        found.append(part)
-    return joined(found, "or")
+        ranges.append(part)
+    return joined(ranges, "or")
 
 
 def outside(holes: Sequence[Interval], low: float, high: float) -> list[Interval]:

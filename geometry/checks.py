@@ -63,7 +63,9 @@ def _faults(design: Design) -> Iterator[DesignError]:
 
 
 def _name_faults(design: Design) -> Iterator[DesignError]:
-    names = {f"material.{key}.name": each.name for key, each in design.material.stated.items()}
+    names = {
+        f"material.{key}.name": material.name for key, material in design.material.stated.items()
+    }
     names["name"] = design.name
     for key, text in names.items():
         if any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text):

@@ -64,7 +64,7 @@ class DesignError(FlexsplineError, ValueError):
         self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
         also = f"; and {others[0]}" if others else ""
         if len(others) > 1:
-            keys = ", ".join(one_line(each.key) for each in others[:LISTED_FAULTS])
+            keys = ", ".join(one_line(fault.key) for fault in others[:LISTED_FAULTS])
             also = (
                 f" (and {len(others)} more faults: {keys}{', …' * (len(others) > LISTED_FAULTS)})"
             )
@@ -73,8 +73,8 @@ class DesignError(FlexsplineError, ValueError):
     @property
     def alone(self) -> str:
         """This fault without the others."""
-        found = "is missing" if self.value is MISSING else f"= {short(self.value)}"
-        return f"{one_line(self.key)} {found}: {one_line(self.reason)}"
+        given = "is missing" if self.value is MISSING else f"= {short(self.value)}"
+        return f"{one_line(self.key)} {given}: {one_line(self.reason)}"
 
 
 class DesignFileError(DesignError):
@@ -135,7 +135,7 @@ def plain_number(value: float, digits: int = 12) -> str:
 def readable(text: str) -> str:
     """Text that UTF-8 can hold: the bytes of a file's name that the locale could not read, read as UTF-8."""
     return _UNREAD.sub(
-        lambda found: found[0].encode("utf-8", "surrogateescape").decode("utf-8", "replace"), text
+        lambda match: match[0].encode("utf-8", "surrogateescape").decode("utf-8", "replace"), text
     )
 
 

@@ -127,21 +127,21 @@ class Meridian:
 
     def cuts_within(self, reach: float) -> tuple[Segment, ...]:
         """The cuts as far as `reach` [mm] from the patch edges that they start from."""
-        found: list[Segment] = []
+        cuts: list[Segment] = []
         for cut in self.cuts:
             first, last = (
                 any(distance(end, p) < SAME_mm for p in self.patch_edges)
                 for end in (cut.start, cut.end)
             )
             if not (first or last) or reach * (first + last) >= cut.length:
-                found.append(cut)
+                cuts.append(cut)
                 continue
             (r1, z1), (r2, z2) = cut.at(np.array([reach, cut.length - reach]) / cut.length)
             if first:
-                found.append(Segment(cut.start, (float(r1), float(z1))))
+                cuts.append(Segment(cut.start, (float(r1), float(z1))))
             if last:
-                found.append(Segment((float(r2), float(z2)), cut.end))
-        return tuple(found)
+                cuts.append(Segment((float(r2), float(z2)), cut.end))
+        return tuple(cuts)
 
     @property
     def volume(self) -> float:

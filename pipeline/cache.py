@@ -87,7 +87,7 @@ class Cache:
     """What is not for the disk, or found no room there, by key."""
     locks: KeyedLocks = field(default_factory=KeyedLocks, compare=False)
     """Held while a value is made, by key."""
-    told: set[str] = field(default_factory=set, compare=False)
+    notices: set[str] = field(default_factory=set, compare=False)
     """Why results could not be stored: each reason is said once."""
 
     def get(
@@ -114,20 +114,20 @@ class Cache:
         self, stage: str, key: str, make: Callable[[], T], is_lasting: Callable[[T], bool]
     ) -> tuple[T, bool]:
         path = self._path(stage, key)
-        found = self._read(path, key)
-        if found is not _MISSING:
-            return found, True
+        stored = self._read(path, key)
+        if stored is not _MISSING:
+            return stored, True
         discard(path.parent, self.notice)
         if key in self.failed:
             raise self.failed[key]
         if key in self.passing:
             return self.passing[key], True
-        if (shared := _shared(key)) is not None and (found := _taken(shared)) is not _MISSING:
-            if isinstance(found, ComputationError):
-                self.failed[key] = found
-                raise found
-            self.passing[key] = found
-            return found, True
+        if (shared := _shared(key)) is not None and (stored := _taken(shared)) is not _MISSING:
+            if isinstance(stored, ComputationError):
+                self.failed[key] = stored
+                raise stored
+            self.passing[key] = stored
+            return stored, True
         try:
             value = make()
         except ComputationError as fault:
@@ -191,8 +191,8 @@ class Cache:
                 made.unlink(missing_ok=True)
         except OSError as error:
             why = f"could not store a result in {self.folder}: {error.strerror}"
-            if why not in self.told:
-                self.told.add(why)
+            if why not in self.notices:
+                self.notices.add(why)
                 if _is_first(why):
                     self.notice(f"{why}; FLEXSPLINE_CACHE names another folder")
             return False

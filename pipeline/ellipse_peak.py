@@ -70,12 +70,12 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
-    w0, apart = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
+    w0, exclusion_mm = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
         narrow = with_narrow_seat(outline, NARROW_SEAT)
-        own = flexspline.material
-        return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
+        material = flexspline.material
+        return ellipse_stress(narrow, material, w0, exclusion_mm, SEAT_TOLERANCE, deadline).peak
 
     return by_harmonics(
         flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
@@ -89,7 +89,7 @@ def _by_two_bodies(flexspline: PartModel) -> StressPeak | None:
 
 
 def _load(flexspline: PartModel) -> BodyLoad:
-    w0, apart, own = (
+    w0, exclusion_mm, material = (
         flexspline.context.design.w0_mm,
         flexspline.part.exclusion_mm,
         flexspline.material,
@@ -98,6 +98,6 @@ def _load(flexspline: PartModel) -> BodyLoad:
     tolerance = peak_tolerance(flexspline.tolerance)
 
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
-        return ellipse_stress(outline, own, w0, apart, tolerance, deadline)
+        return ellipse_stress(outline, material, w0, exclusion_mm, tolerance, deadline)
 
     return BodyLoad("wave_generator_peak", "wave generator", solve, {"w0_mm": w0})

@@ -41,10 +41,10 @@ def enclosure_of(model: PartModel, bodies: TwoBodies) -> Stiffness:
     ------
     NestingError
     """
-    found = bodies.enclosure()
-    if found.half_width <= model.tolerance:
-        return replace(found, shortfall=MET)
-    return replace(found, shortfall=found.shortfall or Shortfall(TOO_FAR))
+    enclosure = bodies.enclosure()
+    if enclosure.half_width <= model.tolerance:
+        return replace(enclosure, shortfall=MET)
+    return replace(enclosure, shortfall=enclosure.shortfall or Shortfall(TOO_FAR))
 
 
 def bodies_of(model: PartModel, solve: PartSolver) -> TwoBodies:
@@ -65,8 +65,8 @@ def bounds_pct(model: PartModel) -> float:
 def body_model(model: PartModel, body: Part, tolerance_pct: float) -> PartModel:
     """A body of revolution in place of the part, with a tolerance of its own."""
     design = model.context.design
-    asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
-    solver = design.solver.model_copy(update=asked)
+    settings = {"tolerance_pct": tolerance_pct, "model": "auto"}
+    solver = design.solver.model_copy(update=settings)
     context = replace(model.context, design=design.model_copy(update={"solver": solver}))
     return replace(model, context=context, part=body)
 

@@ -88,7 +88,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     if lower - upper > allowed:
         raise NestingError(names.less, lower, names.more, upper)
     gap = 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad
-    apart = percent(gap) if gap > 0 else "less than the bounds of either"
+    distance = percent(gap) if gap > 0 else "less than the bounds of either"
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
         lower_Nm_per_rad=min(lower, upper),
@@ -98,7 +98,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
         symmetry=names.symmetry,
         method=(
             f"from {names.less} to {names.more} (less material is never stiffer; the two K differ by "
-            f"{apart}); bounds of each by {whole.method}"
+            f"{distance}); bounds of each by {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),

@@ -66,47 +66,47 @@ class FigureTasks:
         """K of a part, by the name of the figure."""
         self._parts[len(self._tasks)] = part
         figures = partial(_stiffness, name, partial(part_stiffness, part))
-        self._tasks.append(partial(self._found, figures))
+        self._tasks.append(partial(self._result, figures))
 
     def add_rim(self, rim: PartModel) -> None:
         """What the lobes and the ellipse do to the rim."""
         for case in RIM_CASES:
             figures = partial(_stiffness, figure_of(case), partial(rim_stiffness, rim, case))
-            self._tasks.append(partial(self._found, figures))
+            self._tasks.append(partial(self._result, figures))
         for name, peak in (
             ("wave_generator_peak", ellipse_peak),
             ("half_seat_peak", half_seat_peak),
         ):
-            self._tasks.append(partial(self._found, partial(_peak, name, partial(peak, rim))))
+            self._tasks.append(partial(self._result, partial(_peak, name, partial(peak, rim))))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
         """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
         figures = Figures()
 
-        def told(number: int, found: _TaskResult) -> None:
-            figures.add(found.figures)
-            self._learn(found)
+        def take_in(number: int, result: _TaskResult) -> None:
+            figures.add(result.figures)
+            self._learn(result)
             if number in self._parts:
                 self._solved(self._parts[number])
 
         if may_copy():
-            results_of(self._tasks, begun, told)
+            results_of(self._tasks, begun, take_in)
             return figures
         begun()
-        tasks = [partial(_then, task, partial(told, n)) for n, task in enumerate(self._tasks)]
+        tasks = [partial(_then, task, partial(take_in, n)) for n, task in enumerate(self._tasks)]
         with beside(self._context.progress, tasks) as rest:
             rest()
         return figures
 
-    def _learn(self, found: _TaskResult) -> None:
+    def _learn(self, result: _TaskResult) -> None:
         """What a copy of this process remembers of its task."""
         cache = self._context.cache
-        for known, there in ((cache.passing, found.passing), (cache.failed, found.failed)):
+        for known, there in ((cache.passing, result.passing), (cache.failed, result.failed)):
             known.update({key: value for key, value in there.items() if key not in known})
-        for stage, seconds in found.seconds.items():
+        for stage, seconds in result.seconds.items():
             self._context.progress.add(stage, seconds)
 
-    def _found(self, make: Callable[[], Figures]) -> _TaskResult:
+    def _result(self, make: Callable[[], Figures]) -> _TaskResult:
         if os.getpid() == self._process:
             return _TaskResult(make(), {}, {}, {})
         cache, seconds = self._context.cache, dict(self._context.progress.seconds)
@@ -119,8 +119,8 @@ class FigureTasks:
         )
 
 
-def _then(task: Callable[[], _TaskResult], told: Callable[[_TaskResult], None]) -> None:
-    told(task())
+def _then(task: Callable[[], _TaskResult], on_result: Callable[[_TaskResult], None]) -> None:
+    on_result(task())
 
 
 def _stiffness(name: str, solve: Callable[[], Stiffness]) -> Figures:

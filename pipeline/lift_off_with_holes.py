@@ -42,10 +42,10 @@ def resting_with_holes(
         return enclosure
     ratios = [
         (
-            found.lower_Nm_per_rad / own.lower_Nm_per_rad,
-            found.upper_Nm_per_rad / own.upper_Nm_per_rad,
+            rim.lower_Nm_per_rad / rim_held.lower_Nm_per_rad,
+            rim.upper_Nm_per_rad / rim_held.upper_Nm_per_rad,
         )
-        for found, own in ((resting.cut, held.cut), (resting.whole, held.whole))
+        for rim, rim_held in ((resting.cut, held.cut), (resting.whole, held.whole))
     ]
 
     def of_part() -> Stiffness:
@@ -72,8 +72,8 @@ def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
     )
 
 
-def _judged(found: Stiffness, tolerance: float) -> Stiffness:
-    if found.half_width <= tolerance:
-        return replace(found, shortfall=MET)
-    held = f"; with the seat held: {found.shortfall}" if found.shortfall else ""
-    return replace(found, shortfall=replace(found.shortfall, words=f"{TOO_FAR}{held}"))
+def _judged(K: Stiffness, tolerance: float) -> Stiffness:
+    if K.half_width <= tolerance:
+        return replace(K, shortfall=MET)
+    held = f"; with the seat held: {K.shortfall}" if K.shortfall else ""
+    return replace(K, shortfall=replace(K.shortfall, words=f"{TOO_FAR}{held}"))

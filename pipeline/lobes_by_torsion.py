@@ -64,7 +64,7 @@ def lobes_by_torsion(
     softest = 1 / whole.lower_Nm_per_rad + high + rest + coupled
     stiffest = 1 / whole.upper_Nm_per_rad + max(low - coupled, 0.0)
     K = 2 / (softest + stiffest)
-    found = replace(
+    stiffness = replace(
         K_b.times(K / K_b.K_Nm_per_rad),
         lower_Nm_per_rad=1 / softest,
         upper_Nm_per_rad=1 / stiffest,
@@ -75,9 +75,9 @@ def lobes_by_torsion(
         ),
         proven_Nm_per_rad=None,
     )
-    if found.half_width <= tolerance:
-        return replace(found, shortfall=MET)
-    return replace(found, shortfall=K_b.shortfall or Shortfall(TOO_FAR))
+    if stiffness.half_width <= tolerance:
+        return replace(stiffness, shortfall=MET)
+    return replace(stiffness, shortfall=K_b.shortfall or Shortfall(TOO_FAR))
 
 
 def _added(K_b: Stiffness, whole: Stiffness, entry: float) -> tuple[float, float]:
@@ -95,5 +95,5 @@ def _apart(lobes: TwoBodies, first: int) -> float:
         return sum(body.harmonics[every::every])
 
     cut, whole = lobes.cut, lobes.whole
-    apart = share(cut) / cut.lower_Nm_per_rad - share(whole) / whole.upper_Nm_per_rad
-    return max(apart, 0.0)
+    difference = share(cut) / cut.lower_Nm_per_rad - share(whole) / whole.upper_Nm_per_rad
+    return max(difference, 0.0)

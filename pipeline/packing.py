@@ -80,8 +80,8 @@ def _name(kind: type) -> str:
 
 def _named(name: str) -> type:
     """The dataclass of that `_name`; any other is refused."""
-    module, _, own = name.partition(":")
-    kind = getattr(import_module(module), own) if module.startswith(PACKAGE) else None
+    module, _, attribute = name.partition(":")
+    kind = getattr(import_module(module), attribute) if module.startswith(PACKAGE) else None
     if not (isinstance(kind, type) and is_dataclass(kind) and _name(kind) == name):
         raise ValueError(f"{name} is not a dataclass of this package")
     return kind

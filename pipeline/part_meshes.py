@@ -191,7 +191,7 @@ class PartMeshes:
         counted = goes_about_axis(model.part)
         for _ in range(COARSENINGS[model.name] if counted else COARSENINGS_UNCOUNTED):
             try:
-                found = self._swept_or(before, spec, most_elements)
+                chosen = self._swept_or(before, spec, most_elements)
                 break
             except TooManyElementsError as fault:
                 if counted and fault.elements > HARDLY_FEWER * elements:
@@ -199,10 +199,10 @@ class PartMeshes:
                 elements, spec, before = fault.elements, spec.scaled(COARSER_EDGES), spec
         else:
             last = spec if counted else spec.scaled(AS_COARSE_AS_CAN_BE)
-            found = self._swept_or(before, last, self.most_of_first)
-        if found is before and self.most_of_first < elements < inf:
+            chosen = self._swept_or(before, last, self.most_of_first)
+        if chosen is before and self.most_of_first < elements < inf:
             raise TooManyElementsError(elements, self.most_of_first)
-        return found
+        return chosen
 
     def _swept_or(self, before: MeshSpec, spec: MeshSpec, most_elements: float) -> MeshSpec:
         """`spec`, whose swept mesh is kept; or the one before, where that fails a check."""

@@ -42,8 +42,8 @@ def part_stiffness(model: PartModel) -> Stiffness:
     NestingError : the solid model's K lies outside.
     ComputationError, MemoryError : of the first mesh.
     """
-    found = revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
-    return of_toothed(found) if model.toothed else found
+    K = revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
+    return of_toothed(K) if model.toothed else K
 
 
 def revolved_stiffness(model: PartModel) -> Stiffness:
@@ -102,9 +102,9 @@ def twisted_part(model: PartModel) -> TwistedPart:
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
             if one_mesh and enclosure is not None:
-                found = twisted(model, inf, second_s=second_s)
-                if overlap(found.stiffness, enclosure):
-                    return found
+                solved = twisted(model, inf, second_s=second_s)
+                if overlap(solved.stiffness, enclosure):
+                    return solved
             if may_leave_fillets_out(model):
                 return twisted_shaft(model, tolerance)
             return twisted(model, tolerance, second_s=second_s)

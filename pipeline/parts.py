@@ -55,9 +55,9 @@ class AnalysisContext:
         return PartModel(plain, plain.design.part(name), toothed=True)
 
 
-def is_lasting(found: Stiffness | StressPeak) -> bool:
+def is_lasting(figure: Stiffness | StressPeak) -> bool:
     """Whether a figure would be the same on a machine with more time and memory."""
-    return not found.shortfall.of_the_machine
+    return not figure.shortfall.of_the_machine
 
 
 @dataclass(frozen=True)

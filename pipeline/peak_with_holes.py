@@ -97,8 +97,8 @@ def peak_by_two_bodies(
     except ComputationError:
         return None
     same = abs(cut.mises_MPa / whole.mises_MPa - 1) <= AGREEMENT
-    here = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
-    if not (same and here):
+    same_place = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
+    if not (same and same_place):
         return None
     if raised(at_holes, bolts) >= whole.mises_MPa:
         try:

@@ -62,7 +62,7 @@ def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float
         return s * sin(alpha), 0.0
     a, play = gear.centre_distance_mm, bearing.radial_clearance_mm
     steps, weight = play_distribution(gear, bearing, play_std_um)
-    here = involute_clearance(play, a, alpha)
-    off = np.array([involute_clearance(play + s * t, a, alpha) - here for t in steps])
+    nominal = involute_clearance(play, a, alpha)
+    off = np.array([involute_clearance(play + s * t, a, alpha) - nominal for t in steps])
     beyond = 0.5 * erfc(_steps_to_end(gear, bearing, play_std_um) / sqrt(2))
     return sqrt(float(weight @ off**2)), beyond

@@ -55,8 +55,8 @@ class Progress:
             yield
         finally:
             whole = time.monotonic() - began
-            own = whole - inner.pop()
-            self.add(name, own)
+            seconds = whole - inner.pop()
+            self.add(name, seconds)
             if inner:
                 inner[-1] += whole
 

@@ -71,8 +71,8 @@ def stiffness(design: Design, name: PartName, relative_width: float) -> Stiffnes
     ComputationError : as `torsion`.
     """
     part = with_equivalent_ring(design).part(name)
-    found = torsion(part, relative_width)
-    return found if part.shape == design.part(name).shape else of_toothed(found)
+    K = torsion(part, relative_width)
+    return K if part.shape == design.part(name).shape else of_toothed(K)
 
 
 def torsion(part: Part, relative_width: float) -> Stiffness:
@@ -102,8 +102,8 @@ def rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
 def first_rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
     """`rim` on the first mesh of each body that gives K to FIRST_HALF_WIDTH; to be asked for before it."""
 
-    def enough(found: Stiffness) -> bool:
-        return found.half_width <= FIRST_HALF_WIDTH
+    def enough(K: Stiffness) -> bool:
+        return K.half_width <= FIRST_HALF_WIDTH
 
     return _of_holed(part, lambda body: _begun(body, solve, relative_width).until(enough))
 
@@ -121,8 +121,8 @@ def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
 
     if part.name == "flexspline" and part.bolts is not None:
         return enclosed(part, solved)
-    found = solved(part.without_holes())
-    return replace(found, guaranteed=found.guaranteed and part.is_revolved)
+    K = solved(part.without_holes())
+    return replace(K, guaranteed=K.guaranteed and part.is_revolved)
 
 
 def of_1_GPa(part: Part) -> Part:

@@ -83,11 +83,11 @@ def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMes
     ------
     SolidError : the next one would be too large, or fails a check; or as `solid_lobes`.
     """
-    own = range(MESHES if flexspline.is_swept else 0)
-    begins = not own or (supported and _usual_of_held(flexspline) <= flexspline.tolerance)
+    numbers = range(MESHES if flexspline.is_swept else 0)
+    begins = not numbers or (supported and _usual_of_held(flexspline) <= flexspline.tolerance)
     if begins:
         yield _of_torsion(flexspline, supported)
-    for number in own:
+    for number in numbers:
         try:
             mesh = _numbered_mesh(flexspline, number)
         except SolidError:
@@ -99,10 +99,10 @@ def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMes
 
 def _usual_of_held(flexspline: PartModel) -> float:
     """Relative bounds ± that a held rim usually has on the mesh of `rim_mesh`; that mesh is made for it."""
-    found, elements = twisted_part(flexspline).stiffness, rim_mesh(flexspline).mesh.elements
-    level = max((m for m in found.levels if m.elements <= elements), default=found.levels[0],
+    torsion, elements = twisted_part(flexspline).stiffness, rim_mesh(flexspline).mesh.elements
+    level = max((m for m in torsion.levels if m.elements <= elements), default=torsion.levels[0],
                 key=lambda m: m.elements)  # fmt: skip
-    return USUAL_OVER_TORSION * (level.K_Nm_per_rad / found.K_Nm_per_rad - 1)
+    return USUAL_OVER_TORSION * (level.K_Nm_per_rad / torsion.K_Nm_per_rad - 1)
 
 
 def _of_torsion(flexspline: PartModel, supported: bool) -> tuple[TetMesh, float]:

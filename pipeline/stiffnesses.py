@@ -21,7 +21,7 @@ FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
 
 def in_order(every: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
     """Those of `FIGURES` that were found."""
-    return {name: found for name in FIGURES if (found := every.get(name)) is not None}
+    return {name: figure for name in FIGURES if (figure := every.get(name)) is not None}
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,8 @@ def series_bounds_Nm_per_rad(K_b: Stiffness, K_e: Stiffness) -> tuple[float, flo
 
 
 class NotFoundError(ComputationError):
-    """A figure that the answer needs failed: its `name`, and all that was `found` beside it."""
+    """A figure that the answer needs failed: its `name`, and all other `stiffnesses`."""
 
-    def __init__(self, name: str, why: str, found: Stiffnesses) -> None:
-        self.name, self.found = name, found
+    def __init__(self, name: str, why: str, stiffnesses: Stiffnesses) -> None:
+        self.name, self.stiffnesses = name, stiffnesses
         super().__init__(f"{name} was not found: {why}")

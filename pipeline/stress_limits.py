@@ -78,8 +78,8 @@ def share_of_limit(peak: StressPeak, material: Material) -> float | None:
 def stated_limit(design: Design, name: str) -> tuple[float, str] | None:
     """Fatigue limit [MPa] of the part that bears a peak, and the key that states it; None: not stated."""
     limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
-    own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
-    return None if limit is None else (limit, f"material.{own}.fatigue_limit_MPa")
+    part = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
+    return None if limit is None else (limit, f"material.{part}.fatigue_limit_MPa")
 
 
 def is_compared(name: str, peak: Peak) -> bool:

@@ -59,10 +59,10 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
             return replace(field, peak=replace(field.peak, shortfall=UNREFINED))
         field = _solved(flexspline, fine, w0)
         x, y, z = field.peak.at_mm
-        found = hypot(x, y), z
-        if dist(found, expected) < _reach_mm(flexspline):
+        peak_place = hypot(x, y), z
+        if dist(peak_place, expected) < _reach_mm(flexspline):
             return field
-        finer = _refined_at(flexspline, expected, found)
+        finer = _refined_at(flexspline, expected, peak_place)
         return _solved(flexspline, finer, w0) if finer else field
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0}
@@ -86,10 +86,10 @@ def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     if not flexspline.is_swept:
         return None
     try:
-        found = ellipse_stress(
+        field = ellipse_stress(
             part.meridian, flexspline.material, w0, part.exclusion_mm, PLACE_TOLERANCE
         )
-        return found.peak_rz
+        return field.peak_rz
     except ComputationError:
         return None
 

@@ -58,13 +58,13 @@ def contact_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    found = _Ratios(material, tolerance - supported.half_width)
-    own = refine(found, triangulate(outline), deadline)
-    # that of the held seat where a better machine may mend it
-    shortfall = own if own and not supported.shortfall.of_the_machine else supported.shortfall
-    ratio, lowest, highest = found.ratios[-1], found.lowest, 1.0
-    if len(found.ratios) > 1:
-        ratio, doubt = settling(found.ratios)
+    ratios = _Ratios(material, tolerance - supported.half_width)
+    shortfall = refine(ratios, triangulate(outline), deadline)
+    if not shortfall or supported.shortfall.of_the_machine:  # a better machine may mend it
+        shortfall = supported.shortfall
+    ratio, lowest, highest = ratios.ratios[-1], ratios.lowest, 1.0
+    if len(ratios.ratios) > 1:
+        ratio, doubt = settling(ratios.ratios)
         lowest, highest = ratio - doubt, ratio + doubt
     return Stiffness(
         K_Nm_per_rad=supported.K_Nm_per_rad * ratio,
@@ -75,9 +75,9 @@ def contact_stiffness(
         symmetry=supported.symmetry,
         method=(
             f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} times K with the seat"
-            f" held; bounds: those of that K, widened {_doubt_of(len(found.ratios))}"
+            f" held; bounds: those of that K, widened {_doubt_of(len(ratios.ratios))}"
         ),
-        levels=tuple(found.levels),
+        levels=tuple(ratios.levels),
         shortfall=shortfall,
     )
 

@@ -52,9 +52,9 @@ class BlockPlaces:
         first = 9 * before[rows] + 3 * (np.arange(len(rows)) - before[rows])
         component = np.arange(3)
         of_block = first + 3 * blocks[rows] * component[:, None, None] + component[:, None]
-        found = np.empty(9 * len(rows), np.int32)
-        found[of_block] = 3 * columns + component[:, None]
-        return cls(starts_of(np.repeat(3 * blocks, 3)), found, of_block)
+        indices = np.empty(9 * len(rows), np.int32)
+        indices[of_block] = 3 * columns + component[:, None]
+        return cls(starts_of(np.repeat(3 * blocks, 3)), indices, of_block)
 
 
 @dataclass(frozen=True)

@@ -83,12 +83,12 @@ class PatternSolver:
         RuntimeError : K is singular, in SuperLU's words.
         SolveError : it is, in Pardiso's; or the residual of the solution says so.
         """
-        found = solved(matrix, loads) if pardiso() is None else self._by_pardiso(matrix, loads)
-        if not relative_residual(matrix, found, loads) <= LARGEST_RESIDUAL:
+        solution = solved(matrix, loads) if pardiso() is None else self._by_pardiso(matrix, loads)
+        if not relative_residual(matrix, solution, loads) <= LARGEST_RESIDUAL:
             raise SolveError(
                 "the direct solver left a residual: part of the model may be unsupported"
             )
-        return found
+        return solution
 
     def _by_pardiso(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
         """K⁻¹ f; by SuperLU where K is small and its places are new."""

@@ -132,7 +132,7 @@ def solved_lobes(
     """
     lobes, mesh = _RevolvedLobes(material, supported, relative_width), triangulate(outline)
     for _ in finer_in_boxes(lobes, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
-        yield SolvedLobes(lobes.space, lobes.found.amplitudes)
+        yield SolvedLobes(lobes.space, lobes.solution.amplitudes)
 
 
 def lobe_stiffnesses(
@@ -171,14 +171,14 @@ class _RevolvedLobes:
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
-        self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
+        self.solution = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
         self.space, self.mesh = model.space, mesh
-        self.estimate.add(MeshResult(_level(model, self.found), self.found.estimate))
+        self.estimate.add(MeshResult(_level(model, self.solution), self.solution.estimate))
 
     @property
     def missing(self) -> float:
         """Relative error of K by the harmonics left out."""
-        return self.found.tail / sum(self.found.energies)
+        return self.solution.tail / sum(self.solution.energies)
 
     @property
     def met(self) -> bool:
@@ -187,18 +187,18 @@ class _RevolvedLobes:
 
     def stiffness(self, shortfall: Shortfall) -> Stiffness:
         """K between its bounds."""
-        found, missing = self.estimate.at_given_torque(self.missing), self.missing
-        last = 2 * (len(self.found.energies) - 1)
+        bounds, missing = self.estimate.at_given_torque(self.missing), self.missing
+        last = 2 * (len(self.solution.energies) - 1)
         method = (
             f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery estimate"
             f" (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by {self.estimate.scale:.2f}"
         )
-        harmonics = tuple(each / sum(self.found.energies) for each in self.found.energies)
-        K = self.estimate.stiffness(found, "axisymmetric", "body of revolution", method, shortfall)
+        harmonics = tuple(energy / sum(self.solution.energies) for energy in self.solution.energies)
+        K = self.estimate.stiffness(bounds, "axisymmetric", "body of revolution", method, shortfall)
         return replace(K, harmonics=harmonics)
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        error = self.found.error
+        error = self.solution.error
         shares = (LOBE_BULK, LOBE_TWICE_SHARE)
         return refined_repeatedly(mesh, [bulk(error, share) for share in shares])
 
@@ -239,12 +239,12 @@ def solve_lobes(
     return LobeSolution(tuple(energies), tuple(amplitudes), work, rest, error, unknowns, worst)
 
 
-def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:
+def _level(model: HarmonicModel, solution: LobeSolution) -> MeshLevel:
     return MeshLevel(
         shortest_edge_mm=model.mesh.shortest_edge_mm,
         elements=model.mesh.elements,
-        dofs=found.unknowns,
-        K_Nm_per_rad=found.K,
-        K_check_Nm_per_rad=stiffness_of_work(found.work),
-        residual=found.residual,
+        dofs=solution.unknowns,
+        K_Nm_per_rad=solution.K,
+        K_check_Nm_per_rad=stiffness_of_work(solution.work),
+        residual=solution.residual,
     )

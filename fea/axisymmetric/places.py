@@ -58,6 +58,6 @@ class Places:
     def see(self, field: np.ndarray) -> Any:
         """A field (count,) there: scikit-fem's, its values (k,) and slopes `grad` (2, k)."""
         numbered = list(zip(field[self.dofs], self.shapes, strict=True))
-        value = sum(own * np.asarray(shape)[:, 0] for own, shape in numbered)
-        slope = sum(own * shape.grad[:, :, 0] for own, shape in numbered)
+        value = sum(amplitude * np.asarray(shape)[:, 0] for amplitude, shape in numbered)
+        slope = sum(amplitude * shape.grad[:, :, 0] for amplitude, shape in numbered)
         return DiscreteField(value, grad=slope)

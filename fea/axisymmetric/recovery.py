@@ -93,7 +93,7 @@ def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[in
     (u_r, u_z), (w_r, w_z) = u.grad, w.grad
     around = (u + n * seen[TANGENTIAL]) / r if n else u / r
     mean = lam * (u_r + around + w_z)
-    found = {
+    parts = {
         RR: mean + 2 * mu * u_r,
         THETA_THETA: mean + 2 * mu * around,
         ZZ: mean + 2 * mu * w_z,
@@ -102,8 +102,8 @@ def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[in
     if n:
         v = seen[TANGENTIAL]
         v_r, v_z = v.grad
-        found |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
-    return found
+        parts |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
+    return parts
 
 
 def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:

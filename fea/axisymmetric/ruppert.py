@@ -75,10 +75,10 @@ def entering(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Masks of centres (c,) inside the diametral circle of an edge, and of edges (k,) entered so."""
     half = lengths(points, edges) / 2 * (1 - TOUCH)
-    found = cKDTree(centres).query_ball_point(points[edges].mean(axis=1), half)
+    of_edges = cKDTree(centres).query_ball_point(points[edges].mean(axis=1), half)
     within = np.zeros(len(centres), bool)
-    within[np.array([i for inside in found for i in inside], int)] = True
-    return within, np.array([len(inside) > 0 for inside in found])
+    within[np.array([i for inside in of_edges for i in inside], int)] = True
+    return within, np.array([len(inside) > 0 for inside in of_edges])
 
 
 def independent(centres: np.ndarray, reach: np.ndarray) -> np.ndarray:

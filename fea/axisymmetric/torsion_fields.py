@@ -174,13 +174,13 @@ def _tied(space: Space, mesh: MeridianMesh, boundary: Boundary) -> csr_matrix:
     for piece in range(boundary.pieces):
         piece_of[space.on(_piece(piece))] = piece
     zero |= piece_of == ground
-    own = ~zero & (piece_of < 0)
-    number[own] = np.arange(own.sum())
+    untied = ~zero & (piece_of < 0)
+    number[untied] = np.arange(untied.sum())
     others = [p for p in range(boundary.pieces) if p != ground]
     for k, piece in enumerate(others):
-        number[piece_of == piece] = own.sum() + k
+        number[piece_of == piece] = untied.sum() + k
     rows = np.flatnonzero(~zero)
-    shape = space.count, int(own.sum()) + len(others)
+    shape = space.count, int(untied.sum()) + len(others)
     return csr_matrix((np.ones(len(rows)), (rows, number[rows])), shape=shape)
 
 

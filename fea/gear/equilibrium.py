@@ -126,9 +126,9 @@ def _among_contacts(
                 np.abs(left).max() < GEAR_RESIDUAL * size
                 and lack < GEAR_RESIDUAL * arm * force.max()
             ):
-                found = np.zeros(len(at.free))
-                found[i] = force
-                return found, rotation
+                all_forces = np.zeros(len(at.free))
+                all_forces[i] = force
+                return all_forces, rotation
         forces = np.zeros(len(at.free))
         forces[i] = np.maximum(force, 0)
         ball = enter & (at.hertz > 0)
@@ -199,6 +199,6 @@ def _tangent(at: Contacts, forces: np.ndarray) -> tuple[float, np.ndarray]:
     if not weight > 0:  # nothing that carries can turn
         return np.inf, np.zeros_like(forces)
     slope = 1 / weight  # S dF + c dθ = 0 and c·dF = −dT
-    found = np.zeros_like(forces)
-    found[on] = -aside * slope
-    return slope, found
+    forces_slope = np.zeros_like(forces)
+    forces_slope[on] = -aside * slope
+    return slope, forces_slope

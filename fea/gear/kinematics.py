@@ -107,7 +107,7 @@ class ToothMesh:
             off = [front[0] - front, np.zeros_like(back)]
         else:
             off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
-        ahead, behind = (np.interp(np.abs(phi), grid, each) for each in off)
+        ahead, behind = (np.interp(np.abs(phi), grid, removed) for removed in off)
         # the mirror of a front flank is the back flank on the other side
         return np.where(phi >= 0, ahead, behind), np.where(phi >= 0, behind, ahead)
 

@@ -77,7 +77,7 @@ class HoledColumn:
         hole, origin = (rc, 0.0), (0.0, 0.0)
         outside = self.interface == self.outer
         inside = INTERFACE if not outside else CORE_RIM if self.core else None
-        found = [
+        segments = [
             Segment(inner[-1], (rc - rh, 0.0)),
             Segment((rc - rh, 0.0), (rc, rh), hole, HOLE),
             Segment((rc, rh), (rc + rh, 0.0), hole, HOLE),
@@ -86,7 +86,7 @@ class HoledColumn:
             Segment(outer[-1], inner[0]),
             *(Segment(a, b, origin, inside) for a, b in pairwise(inner)),
         ]
-        return Meridian(tuple(found))
+        return Meridian(tuple(segments))
 
     def rest(self, outline: Meridian) -> Meridian:
         """The outline beyond the interface, closed by segments named INTERFACE."""
@@ -122,11 +122,11 @@ class HoledColumn:
         """
         wall = self.inner if self.interface == self.outer else self.outer
         inside = [s.start[1] for s in outline.segments if abs(s.start[0] - wall) < SAME_mm]
-        found = [self.low]
+        levels = [self.low]
         for z in sorted([*inside, self.depth, self.high]):
-            if found[-1] + SAME_mm < z <= self.high:
-                found.append(z)
-        return found
+            if levels[-1] + SAME_mm < z <= self.high:
+                levels.append(z)
+        return levels
 
 
 def column_of(part: Part) -> HoledColumn | None:
@@ -166,5 +166,5 @@ def column_of(part: Part) -> HoledColumn | None:
 
 def _radii(outline: Meridian) -> np.ndarray:
     """Radii of the outline's vertices, and along its arcs."""
-    found = [s.at(np.linspace(0, 1, 2 if s.centre is None else 9))[:, 0] for s in outline.segments]
-    return np.concatenate(found)
+    radii = [s.at(np.linspace(0, 1, 2 if s.centre is None else 9))[:, 0] for s in outline.segments]
+    return np.concatenate(radii)

@@ -89,10 +89,10 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
             return FACTORED_ENERGY * abs(dot(before + more, right))
 
         off = right - matrix @ before
-        found = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
-        if found.early:
+        correction = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
+        if correction.early:
             raise SolveError(f"{FACTORED_STEPS} steps were not enough")
-        x = before + found.x
+        x = before + correction.x
     return x
 
 

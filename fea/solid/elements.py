@@ -62,13 +62,13 @@ def determinants(nodes: np.ndarray, cells: np.ndarray, points: np.ndarray) -> np
 
     element = ElementTetP2()
     slopes = np.stack([element.lbasis(points.T, i)[1] for i in range(10)], axis=2)
-    found = np.empty((len(cells), len(points)))
+    dets = np.empty((len(cells), len(points)))
     for start in range(0, len(cells), CHUNK_CELLS):
         part = slice(start, start + CHUNK_CELLS)
         places = nodes[cells[part]].transpose(2, 1, 0)
         jacobian = np.matmul(slopes.reshape(-1, 10), places)  # of each coordinate
-        found[part] = det(jacobian.reshape(3, 3, len(points), -1)).T
-    return found
+        dets[part] = det(jacobian.reshape(3, 3, len(points), -1)).T
+    return dets
 
 
 def reference_values(points: np.ndarray) -> np.ndarray:
@@ -102,5 +102,5 @@ def jacobian_ratio(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
     1 for straight edges, 0 or less where curving has folded the element.
     """
-    found = determinants(nodes, cells, np.vstack([NODES, tet_rule(4)[0]]))
-    return found.min(axis=1) / np.abs(found).max(axis=1)
+    dets = determinants(nodes, cells, np.vstack([NODES, tet_rule(4)[0]]))
+    return dets.min(axis=1) / np.abs(dets).max(axis=1)

@@ -47,10 +47,10 @@ def fillets_of(shape: Shaft) -> list[Fillet]:
     """Those of a shaft, from the flange on."""
     if shape.fillet_mm <= SAME_mm:
         return []
-    found, z = [], 0.0
+    fillets, z = [], 0.0
     for below, above in pairwise(shape.segment):
         z += below.length_mm
         a, b = below.outer_diameter_mm / 2, above.outer_diameter_mm / 2
         if abs(a - b) > SAME_mm:
-            found.append(Fillet(min(a, b), z, shape.fillet_mm, 1 if b < a else -1))
-    return found
+            fillets.append(Fillet(min(a, b), z, shape.fillet_mm, 1 if b < a else -1))
+    return fillets

@@ -54,9 +54,9 @@ class Layers:
     @property
     def radii(self) -> list[float]:
         """Of all rings [mm], rising; the first is the bore's, or the core's."""
-        found = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
-        found |= {r for f in self.fillets for r in (f.middle, f.far)}
-        rising = _distinct(found)
+        all_radii = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
+        all_radii |= {r for f in self.fillets for r in (f.middle, f.far)}
+        rising = _distinct(all_radii)
         if rising[0] > 0:
             return rising
         least = rising[1]
@@ -78,31 +78,31 @@ class Layers:
         ends |= {z for f in self.fillets for z in f.span}
         if self.part.keyway is not None:
             ends.add(self.part.keyway.start)
-        found = [0.0]
+        levels = [0.0]
         whole = {f.span for f in self.fillets}
         for a, b in pairwise(_distinct(ends)):
             arc = any(low < b - SAME_mm and a + SAME_mm < high for low, high in whole)
             count = 1 if arc else ceil(LAYERS_PER_FAR * (b - a) / far)
-            found += [a + (b - a) * k / count for k in range(1, count)] + [b]
-        return found
+            levels += [a + (b - a) * k / count for k in range(1, count)] + [b]
+        return levels
 
     def curves(self) -> list[Curve]:
         """The plan's lines."""
         radii, sector = self.radii, self.sector
         ends = [(radii[0], radii[-1], a) for a in (0.0, sector)]
-        found: list[Curve] = [
+        curves: list[Curve] = [
             Line((a * np.cos(t), a * np.sin(t)), (b * np.cos(t), b * np.sin(t))) for a, b, t in ends
         ]
-        found += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
+        curves += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
         if self.part.bolts is not None:
-            found += hole_arcs(self.part.bolts, sector)
+            curves += hole_arcs(self.part.bolts, sector)
         slot = self.part.keyway
         if slot is not None:
             outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME_mm)
             half, floor = slot.half_width, slot.floor
-            found.append(Line((floor, 0.0), (floor, half)))
-            found.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
-        return found
+            curves.append(Line((floor, 0.0), (floor, half)))
+            curves.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
+        return curves
 
     def plan(self, smallest_mm: float) -> PlanMesh:
         """Its triangles; with a fan about the axis where material reaches it.
@@ -155,7 +155,7 @@ class Layers:
         n, k = len(plan.points), len(z)
         number = np.arange(n * k).reshape(n, k)
         nodes = [np.column_stack([np.repeat(plan.points, k, axis=0), np.tile(z, n)])]
-        found, count = [], n * k
+        prisms, count = [], n * k
         for j in range(k - 1):
             kept = plan.triangles[self.within(plan, z[j], z[j + 1])]
             low, high = number[:, j].copy(), number[:, j + 1].copy()
@@ -170,13 +170,13 @@ class Layers:
                     r = plan.points[on, 0]
                     nodes.append(np.column_stack([plan.points[on], f.height(r)]))
                     count += len(on)
-            found.append(np.hstack([low[kept], high[kept]]))
-        return np.vstack(nodes), np.vstack(found)
+            prisms.append(np.hstack([low[kept], high[kept]]))
+        return np.vstack(nodes), np.vstack(prisms)
 
 
 def _distinct(values: set[float]) -> list[float]:
-    found: list[float] = []
+    distinct: list[float] = []
     for v in sorted(values):
-        if not found or v > found[-1] + SAME_mm:
-            found.append(v)
-    return found
+        if not distinct or v > distinct[-1] + SAME_mm:
+            distinct.append(v)
+    return distinct

@@ -73,12 +73,16 @@ class LobeCorrection:
         assert whole is not None
         known = whole.stiffness
         work = work_of_stiffness(known.K_Nm_per_rad)
-        found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
-        _, error = error_of(found, self.material)
-        K, check = (stiffness_of_work(work + lost) for lost in (found.lost, found.lost_by_work))
-        work += found.lost
-        level = found.level(K, check)
-        doubt = known.half_width + found.doubt / work
+        correction = lobe_correction(
+            model, self.supported, whole, WAVES_SHARE * self.tolerance * work
+        )
+        _, error = error_of(correction, self.material)
+        K, check = (
+            stiffness_of_work(work + lost) for lost in (correction.lost, correction.lost_by_work)
+        )
+        work += correction.lost
+        level = correction.level(K, check)
+        doubt = known.half_width + correction.doubt / work
         return MeshResult(level, error / work, doubt=doubt)
 
     def method(self, error: str) -> str:

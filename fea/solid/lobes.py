@@ -78,15 +78,15 @@ class _FreeRim:
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
-        self._found = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
+        self._solution = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
         self.mesh = mesh
 
     @property
     def met(self) -> bool:
-        return self._found.estimate < self._wanted
+        return self._solution.estimate < self._wanted
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, SOLID_BULK))
+        return refined(mesh, bulk(self._solution.error, SOLID_BULK))
 
 
 def lobe_stiffness(
@@ -112,8 +112,8 @@ def lobe_stiffness(
     mesh, usual = next(meshes)
     estimate = ScaledEstimate(usual, field.scales.believed)
     rest = (mesh for mesh, _ in meshes)
-    found = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
-    shortfall = refine(found, mesh, Deadline(limit_s))
+    lobes = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
+    shortfall = refine(lobes, mesh, Deadline(limit_s))
     method = field.method(
         "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
         f" {estimate.scale:.2f}"
@@ -135,10 +135,10 @@ class _SolidLobes:
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
             model = Model.of(half_repeat(mesh), self.field.material)
-            found = self.field.solve(model)
-        self.estimate.add(found)
+            result = self.field.solve(model)
+        self.estimate.add(result)
         self.progress(
-            f"{found.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
+            f"{result.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
         )
 
     @property

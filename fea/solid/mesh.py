@@ -77,8 +77,8 @@ def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
         radius = spec.unrolled_radius if unrolled else 0.0
         grading = spec.grading.scaled(factor)
         try:
-            asked = replace(spec, grading=grading, unrolled_radius=radius, time_limit_s=left_s)
-            return _mesh_once(surface, asked)
+            complete = replace(spec, grading=grading, unrolled_radius=radius, time_limit_s=left_s)
+            return _mesh_once(surface, complete)
         except MeshQualityError as fault:
             last = fault
     raise last

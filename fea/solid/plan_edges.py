@@ -65,11 +65,11 @@ class PlanEdges:
         return self._at(self.owner, self.share.mean(axis=1))
 
     def _at(self, owner: np.ndarray, share: np.ndarray) -> np.ndarray:
-        found = np.empty((len(share), 2))
+        points = np.empty((len(share), 2))
         for i in np.unique(owner):
             mine = owner == i
-            found[mine] = mapped(self.curves[i].at(share[mine]), self.sector)
-        return found
+            points[mine] = mapped(self.curves[i].at(share[mine]), self.sector)
+        return points
 
     def split(self, mask: np.ndarray, at: np.ndarray | float = 0.5) -> None:
         """Cut edges (mask) at this share of their range."""

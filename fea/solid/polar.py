@@ -21,6 +21,6 @@ def cartesian(points: np.ndarray) -> np.ndarray:
 def middles(ends: np.ndarray) -> np.ndarray:
     """Middles (e, 3) of edges (e, 2, 3), all as (r, φ, z); an end on the axis has the other's angle."""
     off_axis = ends[:, :, 0] > 0
-    found = ends.mean(axis=1)
-    found[:, 1] = (ends[:, :, 1] * off_axis).sum(axis=1) / np.maximum(1, off_axis.sum(axis=1))
-    return np.asarray(found)
+    middle = ends.mean(axis=1)
+    middle[:, 1] = (ends[:, :, 1] * off_axis).sum(axis=1) / np.maximum(1, off_axis.sum(axis=1))
+    return np.asarray(middle)

@@ -101,19 +101,19 @@ def unrolled_copies(
     polar: np.ndarray, prisms: np.ndarray, wedge: float, copies: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """A wedge and its mirror images: nodes (r, φ, z) and prisms; what two images share is there once."""
-    nodes, found = [], []
+    nodes, cells = [], []
     for k in range(copies):
         image = polar.copy()
         image[:, 1] = mirrored(polar[:, 1], wedge, k)
         image[polar[:, 0] < SAME_mm, 1] = 0.0  # on the axis all angles are one
         nodes.append(image)
         turned = [0, 1, 2, 3, 4, 5] if k % 2 == 0 else [0, 2, 1, 3, 5, 4]
-        found.append(prisms[:, turned] + k * len(polar))
+        cells.append(prisms[:, turned] + k * len(polar))
     stacked = np.vstack(nodes)
     _, first, number = np.unique(
         np.round(stacked / SAME_mm), axis=0, return_index=True, return_inverse=True
     )
-    return stacked[first], number.ravel()[np.vstack(found)]
+    return stacked[first], number.ravel()[np.vstack(cells)]
 
 
 def cut(prisms: np.ndarray) -> np.ndarray:

@@ -34,8 +34,8 @@ def with_middles(
     cells = np.hstack([tets, mesh.t2e.T + n])
     key = edge_numbers(edges, n)
     order = np.argsort(key)
-    found = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
-    return edges, cells, np.hstack([faces, found + n])
+    of_sides = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
+    return edges, cells, np.hstack([faces, of_sides + n])
 
 
 def straightened(

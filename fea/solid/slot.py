@@ -85,9 +85,11 @@ class SlottedTube:
         """Material between the floor's middle and the bore, or the axis [mm]."""
         return self.slot.floor - self.inner
 
-    def grading(self, asked: Grading) -> Grading:
+    def grading(self, wanted: Grading) -> Grading:
         """The same wish of an error, for a revolved mesh of many steps."""
-        return Grading(NEAR_RATIO * asked.near, FAR_RATIO * asked.far, GROWTH_RATIO * asked.growth)
+        return Grading(
+            NEAR_RATIO * wanted.near, FAR_RATIO * wanted.far, GROWTH_RATIO * wanted.growth
+        )
 
     def finer(self, grading: Grading) -> Finer:
         """What the meridian must have beside the grading: shorter edges along `edges`, where the stress
@@ -100,14 +102,14 @@ class SlottedTube:
     def outline(self, whole: Meridian) -> Meridian:
         """The outline with a vertex where each of the block's edges ends."""
         ends = [(self.corner, self.end), (self.outer, self.slot.start)]
-        found: list[Segment] = []
+        segments: list[Segment] = []
         for s in whole.segments:
             on = [p for p in ends if _within(s, p)]
             for p in on:
-                found.append(Segment(s.start, p, patch=s.patch))
+                segments.append(Segment(s.start, p, patch=s.patch))
                 s = Segment(p, s.end, patch=s.patch)
-            found.append(s)
-        return Meridian(tuple(found))
+            segments.append(s)
+        return Meridian(tuple(segments))
 
     def step_rad(self, far: float) -> float:
         """Step about the axis over the slot's half angle, a whole share of it; `far`: `Grading.far` [mm]."""
@@ -189,16 +191,16 @@ class SlottedTube:
         corners = [(floor, 0.0), (floor, half), (side, half)]
         lines = [((*a, z), (*b, z)) for z in (start, self.end) for a, b in pairwise(corners)]
         lines += [((*a, start), (*a, self.end)) for a in corners[1:]]
-        found = []
+        points = []
         for a, b in lines:
             count = max(2, ceil(dist(a, b) / spacing) + 1)
-            found.append(np.linspace(a, b, count))
+            points.append(np.linspace(a, b, count))
         turn = np.linspace(
             0, self.mouth_rad, max(2, ceil(self.outer * self.mouth_rad / spacing) + 1)
         )
         arc = self.outer * np.column_stack([np.cos(turn), np.sin(turn)])
-        found.append(np.column_stack([arc, np.full(len(arc), start)]))
-        return np.vstack(found)
+        points.append(np.column_stack([arc, np.full(len(arc), start)]))
+        return np.vstack(points)
 
 
 def _within(s: Segment, p: tuple[float, float]) -> bool:

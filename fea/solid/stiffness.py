@@ -101,15 +101,15 @@ def solid_stiffness(
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(meshes, field, tolerance, progress, deadline)
-    mesh = found.mesh(meshes.first)
+    torsion = _SolidTorsion(meshes, field, tolerance, progress, deadline)
+    mesh = torsion.mesh(meshes.first)
     # a mesh that exists is solved, however late; `finer` then ends the loop
     late = deadline.elapsed() >= deadline.limit_s
-    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
-    if shortfall and len(found.meshes) < MAX_LEVELS:
-        progress(f"K ± {percent(found.half)} stays, {shortfall}")
-    answer = found.answer(symmetry, shortfall)
-    return RefinedStiffness(answer, tuple(found.meshes), found.turned)
+    shortfall = refine(torsion, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
+    if shortfall and len(torsion.meshes) < MAX_LEVELS:
+        progress(f"K ± {percent(torsion.half)} stays, {shortfall}")
+    answer = torsion.answer(symmetry, shortfall)
+    return RefinedStiffness(answer, tuple(torsion.meshes), torsion.turned)
 
 
 class _SolidTorsion:
@@ -149,18 +149,18 @@ class _SolidTorsion:
     def _add(self, model: Model) -> None:
         """If this raises, the results of the meshes before stay."""
         try:
-            found = self._field.solve(model)
-            estimate = self.estimate.with_mesh(found)
-            own = found.turned.K_energy * (1 + MESH_LIMIT) if found.turned else inf
-            if estimate.at_given_angle().lower > own:
+            result = self._field.solve(model)
+            estimate = self.estimate.with_mesh(result)
+            largest = result.turned.K_energy * (1 + MESH_LIMIT) if result.turned else inf
+            if estimate.at_given_angle().lower > largest:
                 raise CorrectionError("the correction leaves more of K than all of the field")
         except CorrectionError as fault:
             self._progress(str(fault))
             full = FullTorsion(self._field.material, self._field.driven)
-            found = full.solve(model)
-            estimate = _of(full, model.mesh).with_mesh(found)
+            result = full.solve(model)
+            estimate = _of(full, model.mesh).with_mesh(result)
             self._field = full
-        self.estimate, self.turned, self._errors = estimate, found.turned, found.errors
+        self.estimate, self.turned, self._errors = estimate, result.turned, result.errors
 
     @property
     def half(self) -> float:

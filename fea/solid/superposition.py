@@ -88,8 +88,8 @@ class Walls:
             raise MeshQualityError("no facet of the mesh lies on a wall of holes or keyway")
         points, weights = get_quadrature(RefTri, WALL_DEGREE)
         element = ElementTriP2()
-        each = [element.lbasis(points, i) for i in range(6)]
-        shapes, slopes = np.stack([s for s, _ in each]), np.stack([s for _, s in each], axis=1)
+        basis = [element.lbasis(points, i) for i in range(6)]
+        shapes, slopes = np.stack([s for s, _ in basis]), np.stack([s for _, s in basis], axis=1)
         nodes = mesh.nodes[facets]
         x, y, z = np.einsum("aq,kad->dkq", shapes, nodes)
         along = np.einsum("iaq,kad->ikqd", slopes, nodes)
@@ -135,10 +135,10 @@ class Walls:
 
     def forces(self, pull: np.ndarray) -> np.ndarray:
         """Nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
-        found = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
-        each = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
-        np.add.at(found, self.facets, each)
-        return found
+        forces = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
+        nodal = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
+        np.add.at(forces, self.facets, nodal)
+        return forces
 
 
 def wall_facets(mesh: TetMesh, part: Part) -> np.ndarray:
@@ -200,14 +200,14 @@ class WholeUnderLobes:
 def at_cuts(part: Part) -> tuple[Box, ...]:
     """Where in the meridian the holes and the keyway of a part are, with the length of the first edges there:
     how wide the cut is, or how deep, if that is less."""
-    found = []
+    boxes = []
     if (bolts := part.bolts) is not None:
-        found.append(Box((bolts.inner, bolts.outer), (0.0, part.hole_depth), 2 * bolts.hole_radius))
+        boxes.append(Box((bolts.inner, bolts.outer), (0.0, part.hole_depth), 2 * bolts.hole_radius))
     if (slot := part.keyway) is not None:
         outer = max(r for s in part.meridian.segments for r, _ in (s.start, s.end))
         deep = min(2 * slot.half_width, outer - slot.floor)
-        found.append(Box((slot.floor, outer), (slot.start, part.length), deep))
-    return tuple(found)
+        boxes.append(Box((slot.floor, outer), (slot.start, part.length), deep))
+    return tuple(boxes)
 
 
 @dataclass(frozen=True)
@@ -289,8 +289,8 @@ def _around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarra
 
 def _moved(seen: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
     """Displacements (3, k, q) along r, φ, z of amplitudes U, V, W: −U sin nφ, V cos nφ, −W sin nφ."""
-    found = np.zeros((3, *cosine.shape), complex)
+    displacement = np.zeros((3, *cosine.shape), complex)
     for component, factor in ((RADIAL, -sine), (TANGENTIAL, cosine), (AXIAL, -sine)):
         if component in seen:
-            found[component] = factor * np.asarray(seen[component]).reshape(cosine.shape)
-    return found
+            displacement[component] = factor * np.asarray(seen[component]).reshape(cosine.shape)
+    return displacement

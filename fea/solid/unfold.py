@@ -56,12 +56,12 @@ class Unfolding:
 
         `values` (copies, n, 3) are the copies' own, each as it is before that is turned and reflected.
         """
-        found = values[self.node] if values.ndim == 2 else values[self.copy, self.node]
+        vectors = values[self.node] if values.ndim == 2 else values[self.copy, self.node]
         odd = self.copy % 2 == 1
-        found[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
+        vectors[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
         turn = np.radians((self.copy + odd) * self.sector_deg)
         c, s = np.cos(turn), np.sin(turn)
-        x, y, z = found.T
+        x, y, z = vectors.T
         return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 

@@ -38,11 +38,11 @@ class CyclicWave:
 
     def of(self, function: Callable[[np.ndarray], np.ndarray], phi: np.ndarray) -> np.ndarray:
         """f_p at angles [rad] of a function of the angle with the period 2π; complex, real where p is."""
-        found = np.zeros(phi.shape, complex)
+        total = np.zeros(phi.shape, complex)
         for j in range(self.repeats):
             turn = 2 * pi * j / self.repeats
-            found += np.exp(-1j * self.number * turn) * function(phi + turn)
-        return (found.real if self.is_real else found) / self.repeats
+            total += np.exp(-1j * self.number * turn) * function(phi + turn)
+        return (total.real if self.is_real else total) / self.repeats
 
     def on_copy(self, values: np.ndarray, copy: int) -> np.ndarray:
         """What the wave and its conjugate are on a copy of half a repeat, before that is put in place.

@@ -55,16 +55,18 @@ def whole_part(
     ------
     ValueError : the sector does not divide the circle into mirrored pairs.
     """
-    found = unfolding(mesh, 360.0)
-    own = face_patches(mesh)
-    mirrored = own[:, MIRRORED_FACES]
+    unfolded = unfolding(mesh, 360.0)
+    face_patch = face_patches(mesh)
+    mirrored = face_patch[:, MIRRORED_FACES]
     return WholePart(
-        nodes=found.mesh.nodes,
-        cells=found.mesh.cells,
-        displacement=found.vectors(displacement, parity),
-        mises=mises[found.node],
-        face_patch=np.concatenate([mirrored if k % 2 else own for k in range(found.copies)]),
-        start_deg=np.repeat(np.arange(found.copies) * mesh.sector_deg, mesh.elements),
+        nodes=unfolded.mesh.nodes,
+        cells=unfolded.mesh.cells,
+        displacement=unfolded.vectors(displacement, parity),
+        mises=mises[unfolded.node],
+        face_patch=np.concatenate(
+            [mirrored if k % 2 else face_patch for k in range(unfolded.copies)]
+        ),
+        start_deg=np.repeat(np.arange(unfolded.copies) * mesh.sector_deg, mesh.elements),
         patches=mesh.patches,
         sector_deg=mesh.sector_deg,
     )

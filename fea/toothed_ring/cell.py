@@ -160,8 +160,8 @@ class CellModel:
 
 
 def _solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
-    found = solved(matrix, load)
-    residual = relative_residual(matrix, found, load)
+    solution = solved(matrix, load)
+    residual = relative_residual(matrix, solution, load)
     if not residual < LARGEST_RESIDUAL:
         raise ToothedRingError(f"residual {residual:.1e} of {len(load)} equations is too large")
-    return found
+    return solution

@@ -53,11 +53,13 @@ class Chain:
         ------
         EquilibriumError
         """
-        found: list[Equilibrium] = []
+        equilibria: list[Equilibrium] = []
         with one_thread():
             for torque in torques_Nm:
-                found.append(self.model.at_torque(torque, found[-1] if found else start))
-        return found
+                equilibria.append(
+                    self.model.at_torque(torque, equilibria[-1] if equilibria else start)
+                )
+        return equilibria
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:
         """Of the output [rad]; errors as `along`."""
@@ -104,7 +106,7 @@ def _of_holes(part: Part, relative_width: float) -> float:
     """What bolt holes add [rad/(N·m)], by K_b of the case `uniform`: 1/K with them less 1/K without."""
     if part.bolts is None:
         return 0.0
-    own, filled = (
-        revolved.torsion(each, relative_width).K_Nm_per_rad for each in (part, part.without_holes())
+    holed, filled = (
+        revolved.torsion(body, relative_width).K_Nm_per_rad for body in (part, part.without_holes())
     )
-    return max(0.0, 1 / own - 1 / filled)
+    return max(0.0, 1 / holed - 1 / filled)

@@ -190,8 +190,8 @@ def pair_compliance(design: Design) -> float:
     teeth = (
         tooth(
             lever, gear.tooth_thickness_mm, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
-            f.ring_width_mm, each,
+            f.ring_width_mm, steel,
         )
-        for each in materials
+        for steel in materials
     )  # fmt: skip
     return sum(teeth) + flank_contact(f.ring_width_mm, *materials)

@@ -75,15 +75,15 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
 
 def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[GearWarning]:
     """What makes it a gear that was not intended."""
-    found: list[GearWarning] = []
+    listed: list[GearWarning] = []
     if preload_N := both_press_N(model, unloaded):
-        found.append(_pressing(preload_N, design, model, unloaded))
+        listed.append(_pressing(preload_N, design, model, unloaded))
     if cuts := _cuts_in(model.mesh):
-        found.append(cuts)
+        listed.append(cuts)
     rated, _ = rated_torque(design)
     if design.load.torque_Nm > BEYOND_RATED * rated:
-        found.append(LoadBeyondRated(design.load.torque_Nm, rated))
-    return found
+        listed.append(LoadBeyondRated(design.load.torque_Nm, rated))
+    return listed
 
 
 def _cuts_in(mesh: ToothMesh) -> CuttingFlanks | None:
@@ -115,32 +115,32 @@ def _pressing(
     if _cuts_in(model.mesh):
         return PressingFlanks(preload_N, "flanks_cut")
     front, back = model.flank_forces(unloaded)
-    ahead, behind = (degrees(model.tooth_angles[each.argmax()]) for each in (front, back))
+    ahead, behind = (degrees(model.tooth_angles[forces.argmax()]) for forces in (front, back))
     return PressingFlanks(preload_N, TightFlanks(ahead, behind))
 
 
 def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]:
     """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
-    found: list[GearNote] = []
+    listed: list[GearNote] = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
-        found.append(HalvedBalls(balls, even(balls)))
+        listed.append(HalvedBalls(balls, even(balls)))
     if design.gear.ratio < LOW_RATIO:
-        found.append(LowRatio(LOW_RATIO))
+        listed.append(LowRatio(LOW_RATIO))
     mesh = model.mesh
     if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
         removed_um = 1e3 * mesh.largest_relief
-        found.append(RelievedFlanks(degrees(mesh.relieved_from), removed_um, degrees(mesh.reach)))
+        listed.append(RelievedFlanks(degrees(mesh.relieved_from), removed_um, degrees(mesh.reach)))
     if mesh.face == "relieved":
         outwards, along = model.rim.cone(mesh.stroke)
         off = np.abs(mesh.closing(model.tooth_angles[:, None], outwards, along)).max()
-        found.append(ShapedFaces(float(1e3 * off)))
+        listed.append(ShapedFaces(float(1e3 * off)))
     if design.flexspline.teeth == "drawn" and mesh.flanks != "drawn":
-        found.append(StraightFlanks(design.gear.pressure_angle_deg))
+        listed.append(StraightFlanks(design.gear.pressure_angle_deg))
     size = np.abs(teeth)
     if max(size[0], size[-1]) > AT_THE_END * size.max():
-        found.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
-    return found
+        listed.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
+    return listed
 
 
 def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:

@@ -90,8 +90,8 @@ class Claims:
             if CLAIM not in trial.attributes:
                 continue
             claim = Claim(**trial.attributes[CLAIM])
-            told = trial.attributes.get(ROW)
-            outcome = outcome_of(told) if told else None
+            row = trial.attributes.get(ROW)
+            outcome = outcome_of(row) if row else None
             if outcome and trial.finished:
                 self.add_row(trial.number, Row(claim.slot, trial.values, outcome))
             else:

@@ -20,9 +20,9 @@ def stiffness_keys(name: str) -> tuple[str, str, str]:
     return f"{name}_Nm_per_rad", f"{bounds}[0]", f"{bounds}[1]"
 
 
-def stiffness_figures(name: str, found: Stiffness) -> dict[str, float]:
+def stiffness_figures(name: str, K: Stiffness) -> dict[str, float]:
     """A stiffness and both its bounds, by their keys."""
-    values = found.K_Nm_per_rad, *found.bounds_Nm_per_rad
+    values = K.K_Nm_per_rad, *K.bounds_Nm_per_rad
     return dict(zip(stiffness_keys(name), values, strict=True))
 
 
@@ -56,9 +56,9 @@ USUAL_FIGURES = ("K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", TOTAL)
 """What a study without objective and constraint looks at."""
 
 
-def needed(asked: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
+def needed(figures: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
     """The solves that give the figures asked for, beside the usual ones."""
-    wanted = set(asked)
+    wanted = set(figures)
     return tuple(s for s, keys in GIVEN_BY.items() if s in usual or wanted & set(keys))
 
 

@@ -95,15 +95,17 @@ def drifts(keys: Iterable[str]) -> bool:
     return any(k.startswith("shaft.") or k.endswith(".poissons_ratio") for k in keys)
 
 
-def with_holes(found: Mapping[str, float], design: Design, effect: HolesEffect) -> dict[str, float]:
+def with_holes(
+    figures: Mapping[str, float], design: Design, effect: HolesEffect
+) -> dict[str, float]:
     """Figures with K_e and its bounds corrected, and the factor beside them."""
     K, low, high = stiffness_keys("K_e")
-    value, doubt = effect.factor(design, found[K])
+    value, doubt = effect.factor(design, figures[K])
     return {
-        **found,
-        K: found[K] * value,
-        low: found[low] * (value - doubt),
-        high: found[high] * (value + doubt),
+        **figures,
+        K: figures[K] * value,
+        low: figures[low] * (value - doubt),
+        high: figures[high] * (value + doubt),
         "K_e_bounds_guaranteed": 0.0,
         "K_e_holes_factor": value,
     }

@@ -42,7 +42,7 @@ class Indices:
         )
 
     @property
-    def told(self) -> bool:
+    def is_known(self) -> bool:
         """Whether every index is known well enough to be shown."""
         return self.widest <= WIDEST_INTERVAL
 

@@ -68,13 +68,13 @@ def grid(study: Study) -> GridPlan:
     taken = int(np.prod([n for n in fixed.values() if n] or [1]))
     open_keys = [k for k, n in fixed.items() if not n]
     share = (budget / taken) ** (1 / len(open_keys)) if open_keys else 0.0
-    each = max(2, int(share + ROOT_ROUNDING))
+    steps = max(2, int(share + ROOT_ROUNDING))
     axes: dict[str, list[float]] = {}
     for key, span in spans.items():
         if span.values is not None:
             axes[key] = list(span.values)
             continue
-        axis = np.linspace(*span.ends, span.steps or each)
+        axis = np.linspace(*span.ends, span.steps or steps)
         if key in study.whole:
             axis = np.unique(np.round(axis))
         axes[key] = [float(plain_number(v)) for v in axis]

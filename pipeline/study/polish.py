@@ -76,16 +76,16 @@ def near(polish: Polish, random: np.random.Generator) -> dict[str, Any]:
     from optuna.distributions import CategoricalDistribution, IntDistribution
 
     best, step = polish.best, polish.step
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, over in best.distributions.items():
         value = best.params[key]
         if isinstance(over, CategoricalDistribution):
             redrawn = random.random() < CHANGES
-            found[key] = over.choices[random.integers(len(over.choices))] if redrawn else value
+            values[key] = over.choices[random.integers(len(over.choices))] if redrawn else value
             continue
         low, high = float(over.low), float(over.high)  # type: ignore[attr-defined]
         moved = value + step * (high - low) * random.standard_normal()
         moved = high - abs(high - (low + abs(moved - low)))
         moved = float(np.clip(moved, low, high))
-        found[key] = round(moved) if isinstance(over, IntDistribution) else moved
-    return found
+        values[key] = round(moved) if isinstance(over, IntDistribution) else moved
+    return values

@@ -136,15 +136,15 @@ def scatter_of(
         same = float(independent.mean())
         return Scatter(key, inputs, independent, independent, same, same, dropped=dropped)
 
-    found = attributed(inputs, points, values)
-    if found.surface is None:
+    attribution = attributed(inputs, points, values)
+    if attribution.surface is None:
         return Scatter(
-            key, inputs, independent, independent, *_ends(independent), found, (), dropped
+            key, inputs, independent, independent, *_ends(independent), attribution, (), dropped
         )  # fmt: skip
-    cloud = Cloud(found.surface, seed)
+    cloud = Cloud(attribution.surface, seed)
     drawn = cloud.values(inputs)
     return Scatter(
-        key, inputs, independent, drawn, *_ends(drawn), found, tightening(cloud), dropped
+        key, inputs, independent, drawn, *_ends(drawn), attribution, tightening(cloud), dropped
     )
 
 
@@ -157,14 +157,14 @@ def attributed(
     block = np.repeat(np.arange(len(blocks)), k + 2)
     surface = surface_through(inputs, points[solved], values[solved], block[solved])
     explained = surface.explained if surface else None
-    if surface and (found := surface.indices()).told:
-        return Attribution(found, surface, explained)
+    if surface and (indices := surface.indices()).is_known:
+        return Attribution(indices, surface, explained)
     whole = blocks[np.isfinite(blocks).all(axis=1)]
     if len(whole) < LEAST_BLOCKS or np.ptp(whole[:, [0, -1]]) == 0:
         return Attribution(explained=explained)
-    found, half = sampled_indices(whole)
+    indices, half = sampled_indices(whole)
     if half <= WIDEST_INTERVAL:
-        return Attribution(found, explained=explained)
+        return Attribution(indices, explained=explained)
     more = np.ceil(np.log2(len(blocks) * (half / WIDEST_INTERVAL) ** 2))
     return Attribution(explained=explained, enough=int(2**more) * (k + 2))
 
@@ -197,14 +197,14 @@ def tightening(cloud: Cloud) -> tuple[Tightened, ...]:
     """What every input's tightening buys of the 95 % range."""
     inputs = cloud.surface.inputs
     now = float(np.ptp(cloud.ends(inputs)))
-    found = []
-    for i, own in enumerate(inputs):
+    gains = []
+    for i, scattered in enumerate(inputs):
         for factor in TIGHTENING_FACTORS:
             width = float(
-                np.ptp(cloud.ends((*inputs[:i], own.tightened(factor), *inputs[i + 1 :])))
+                np.ptp(cloud.ends((*inputs[:i], scattered.tightened(factor), *inputs[i + 1 :])))
             )
-            found.append(Tightened(own.key, factor, width, now - width))
-    return tuple(found)
+            gains.append(Tightened(scattered.key, factor, width, now - width))
+    return tuple(gains)
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:

@@ -62,5 +62,5 @@ class Slope:
 class Slopes:
     """Of one design; `missing`: why a dimension has none, by its key."""
 
-    found: tuple[Slope, ...]
+    slopes: tuple[Slope, ...]
     missing: Mapping[str, Shortfall]

@@ -84,8 +84,8 @@ def helps(fault: BaseException) -> str:
 
 
 def _identity(path: Path) -> tuple[int, int]:
-    found = path.stat()
-    return found.st_dev, found.st_ino
+    status = path.stat()
+    return status.st_dev, status.st_ino
 
 
 def _first(fault: BaseException) -> BaseException:

@@ -172,11 +172,11 @@ class TrialStore:
     @_plainly
     def finish(self, finished: Sequence[Finished]) -> None:
         """Store rows and close their trials, all in one transaction."""
-        told = {
+        attributes = {
             f.job.trial_id: ({ROW: asdict(f.outcome)}, f.objectives) for f in finished
         }  # fmt: skip
         with self._tables.locked() as connection:
-            closed = self._tables.close(connection, told)
+            closed = self._tables.close(connection, attributes)
         for f in finished:
             self._known.held.discard(f.job.trial_id)
             if f.job.trial_id in closed:

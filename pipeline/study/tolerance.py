@@ -89,16 +89,16 @@ def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
     }
     for key, spread in study.file.tolerance.items():
         stds[key] = spread.std or 0.0
-    found = []
+    inputs = []
     for key, std in stds.items():
         spread_or_none = study.file.tolerance.get(key)
         half = spread_or_none.plus_minus if spread_or_none else None
         if not std and half is None:
             continue
-        found.append(_input(design, key, std, half))
-    if not found:
+        inputs.append(_input(design, key, std, half))
+    if not inputs:
         raise StudyError("tolerance", None, "nothing scatters: give [tolerance] or [uncertainty]")
-    return tuple(found)
+    return tuple(inputs)
 
 
 def _input(design: Design, key: str, std: float, half: float | None) -> ScatteredInput:
@@ -150,8 +150,8 @@ def saltelli(inputs: tuple[ScatteredInput, ...], base: int, seed: int) -> np.nda
     k = len(inputs)
     both = qmc.Sobol(2 * k, scramble=True, seed=seed).random(base)
     blocks = np.repeat(both[:, None, :k], k + 2, axis=1)
-    own = np.arange(k)
-    blocks[:, own + 1, own] = both[:, k:]
+    number = np.arange(k)
+    blocks[:, number + 1, number] = both[:, k:]
     blocks[:, -1] = both[:, k:]
     unit = blocks.reshape(-1, k)
     return np.column_stack([x.at(u) for x, u in zip(inputs, unit.T, strict=True)])
@@ -177,8 +177,8 @@ class ScatteredDesigns(PlannedDesigns):
         """
         changed = linked(self.study, values)
         material = self.study.design.material
-        own = SHAFT_MODULUS in values or SHAFT_MODULUS in self.study.file.link
-        if MODULUS in values and material.shaft is not None and not own:
+        shaft_varies = SHAFT_MODULUS in values or SHAFT_MODULUS in self.study.file.link
+        if MODULUS in values and material.shaft is not None and not shaft_varies:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
         return Task(self._tables, changed, self.solves, self.holes)

@@ -37,13 +37,13 @@ def answer(call: bytes) -> bytes:
         function, arguments = pickle.loads(call)
         return pickle.dumps((True, function(*arguments)))
     except Exception as fault:
-        told = traceback.format_exc()
+        trace = traceback.format_exc()
         try:
-            fault.add_note(told)
+            fault.add_note(trace)
             said = pickle.dumps((False, fault))
             pickle.loads(said)  # an error that asks for more than a message cannot be made again
         except Exception:
-            said = pickle.dumps((False, RuntimeError(told)))
+            said = pickle.dumps((False, RuntimeError(trace)))
         return said
 
 
