@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
+from functools import partial
 from math import cos, radians
 
 from flexspline.geometry.bounds import below, span
@@ -18,6 +19,7 @@ from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
+from flexspline.geometry.halving import last_that
 from flexspline.geometry.module_fit import (
     MM_PER_M,
     fitting_diameters_mm,
@@ -32,8 +34,8 @@ from flexspline.geometry.ranges import TEETH, LENGTH_mm
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
 
-HALVINGS = 20
-"""Of a range of diameters, to its millionth: its ends are told in four digits."""
+RANGE_SHARE = 1e-6
+"""Error of a range's end, as a share of the range: ends are told in four digits."""
 
 
 def check(design: Design) -> None:
@@ -154,10 +156,7 @@ def _largest_allowed(design: Design, low: float, high: float) -> float:
     """The largest inner diameter up to `high` that `_may_have` [mm]; `high` where it has not even `low`."""
     if low > high or _may_have(design, high) or not _may_have(design, low):
         return high
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _may_have(design, middle) else (low, middle)
-    return low
+    return last_that(partial(_may_have, design), low, high, RANGE_SHARE * (high - low))
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:

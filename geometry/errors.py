@@ -11,6 +11,8 @@ MISSING = object()
 """The value of a key that is not there."""
 ARTEFACT = 14
 """Letters of a float: longer ones, such as 0.30000000000000004, are rounding and not what a person wrote."""
+LONGEST_VALUE = 60
+"""Letters of a value that an error message repeats, at most."""
 FIXED = range(-6, 7)
 """Powers of ten that are written out; beyond, zeros have to be counted."""
 
@@ -94,23 +96,23 @@ class GeometryError(ComputationError):
     """The CAD kernel did not produce the solid that the design describes."""
 
 
-def short(value: object, limit: int = 60) -> str:
+def short(value: object) -> str:
     """A value as one short printable line."""
     if isinstance(value, bool):
         text = str(value).lower()  # as TOML writes it
-    elif isinstance(value, int) and abs(value) >= 10**limit:
-        text = "a whole number of more than 60 digits"  # str() refuses thousands of digits
+    elif isinstance(value, int) and abs(value) >= 10**LONGEST_VALUE:
+        text = f"a whole number of more than {LONGEST_VALUE} digits"  # str() refuses thousands of digits
     elif isinstance(value, dict):
         text = "{a table}"
     elif isinstance(value, list | tuple):
         text = f"[a list of {len(value)}]"
     elif isinstance(value, str):
-        text = f'"{value[: limit + 1]}"'
+        text = f'"{value[: LONGEST_VALUE + 1]}"'
     else:
         text = str(value)
         if isinstance(value, float) and ("e" in text or len(text) > ARTEFACT):
             text = plain_number(value)
-    return one_line(text, limit)
+    return one_line(text, LONGEST_VALUE)
 
 
 def plain_number(value: float, digits: int = 12) -> str:

@@ -65,19 +65,17 @@ class FigureTasks:
     def add_part(self, name: str, part: PartModel) -> None:
         """K of a part, by the name of the figure."""
         self._parts[len(self._tasks)] = part
-        figures = partial(_stiffness, name, partial(part_stiffness, part))
-        self._tasks.append(partial(self._result, figures))
+        self._add(name, partial(part_stiffness, part))
 
     def add_rim(self, rim: PartModel) -> None:
         """What the lobes and the ellipse do to the rim."""
         for case in RIM_CASES:
-            figures = partial(_stiffness, figure_of(case), partial(rim_stiffness, rim, case))
-            self._tasks.append(partial(self._result, figures))
-        for name, peak in (
-            ("wave_generator_peak", ellipse_peak),
-            ("half_seat_peak", half_seat_peak),
-        ):
-            self._tasks.append(partial(self._result, partial(_peak, name, partial(peak, rim))))
+            self._add(figure_of(case), partial(rim_stiffness, rim, case))
+        self._add("wave_generator_peak", partial(ellipse_peak, rim))
+        self._add("half_seat_peak", partial(half_seat_peak, rim))
+
+    def _add(self, name: str, solve: Callable[[], Stiffness | StressPeak]) -> None:
+        self._tasks.append(partial(self._result, partial(_attempt, name, solve)))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
         """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
@@ -92,9 +90,13 @@ class FigureTasks:
         if may_copy():
             results_of(self._tasks, begun, take_in)
             return figures
+
+        def solve(number: int) -> None:
+            take_in(number, self._tasks[number]())
+
         begun()
-        tasks = [partial(_then, task, partial(take_in, n)) for n, task in enumerate(self._tasks)]
-        with beside(self._context.progress, tasks) as rest:
+        numbers = range(len(self._tasks))
+        with beside(self._context.progress, [partial(solve, n) for n in numbers]) as rest:
             rest()
         return figures
 
@@ -119,17 +121,12 @@ class FigureTasks:
         )
 
 
-def _then(task: Callable[[], _TaskResult], on_result: Callable[[_TaskResult], None]) -> None:
-    on_result(task())
-
-
-def _stiffness(name: str, solve: Callable[[], Stiffness]) -> Figures:
+def _attempt(name: str, solve: Callable[[], Stiffness | StressPeak]) -> Figures:
     tried = Attempts()
-    K = tried.get(name, solve)
-    return Figures({} if K is None else {name: K}, {}, tried.missing)
-
-
-def _peak(name: str, find: Callable[[], StressPeak]) -> Figures:
-    tried = Attempts()
-    peak = tried.get(name, find)
-    return Figures({}, {} if peak is None else {name: peak}, tried.missing)
+    figure = tried.get(name, solve)
+    figures = Figures(missing=tried.missing)
+    if isinstance(figure, StressPeak):
+        figures.peaks[name] = figure
+    elif figure is not None:
+        figures.K[name] = figure
+    return figures

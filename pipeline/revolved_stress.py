@@ -24,14 +24,12 @@ KEPT_FIELDS = 32
 
 def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
     """The peak stress on the wave generator's ellipse; errors as `torsion`."""
-    peak = _ellipse_peak(_body(part), tolerance)
-    return peak.times(w0_mm * part.material.youngs_modulus_GPa)
+    return _ellipse_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def half_seat_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
     """The same on a seat half as wide as the ring; errors as `torsion`."""
-    peak = _half_seat_peak(_body(part), tolerance)
-    return peak.times(w0_mm * part.material.youngs_modulus_GPa)
+    return _half_seat_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def torque_peak(part: Part, torque_Nm: float, tolerance: float) -> StressPeak:

@@ -83,16 +83,16 @@ class Couplings:
 
     def _torsion(self, n: int) -> dict[tuple[int, int], np.ndarray]:
         lam, mu = self.material.lam, self.material.mu
+        rr, ro, o_r, oo, zz = self._of_torsion
         return {
-            (TANGENTIAL, TANGENTIAL): n * n * (lam + 2 * mu) * self._oo
-            + mu * (self._rr - self._ro - self._or + self._oo + self._zz)
+            (TANGENTIAL, TANGENTIAL): n * n * (lam + 2 * mu) * oo + mu * (rr - ro - o_r + oo + zz)
         }
 
     def _all(self, n: int) -> dict[tuple[int, int], np.ndarray]:
         lam, mu = self.material.lam, self.material.mu
         both = lam + 2 * mu
-        rr, rz, ro, zz, zo, oo = self._rr, self._rz, self._ro, self._zz, self._zo, self._oo
-        zr, o_r, oz = rz[self._pairs.transposed], self._or, zo[self._pairs.transposed]
+        rr, ro, o_r, oo, zz = self._of_torsion
+        rz, zr, zo, oz = self._of_meridian
         return {
             (RADIAL, RADIAL): both * (rr + oo) + lam * (ro + o_r) + mu * (zz + n * n * oo),
             (AXIAL, AXIAL): both * zz + mu * (rr + n * n * oo),
@@ -114,29 +114,13 @@ class Couplings:
         return self._pairs.summed(form.elemental(self.space.basis).data)
 
     @cached_property
-    def _rr(self) -> np.ndarray:
-        return self._entries(RR)
+    def _of_torsion(self) -> tuple[np.ndarray, ...]:
+        """RR, RO and its transpose, OO, ZZ: all that torsion needs."""
+        rr, ro, oo, zz = map(self._entries, (RR, RO, OO, ZZ))
+        return rr, ro, ro[self._pairs.transposed], oo, zz
 
     @cached_property
-    def _rz(self) -> np.ndarray:
-        return self._entries(RZ)
-
-    @cached_property
-    def _ro(self) -> np.ndarray:
-        return self._entries(RO)
-
-    @cached_property
-    def _or(self) -> np.ndarray:
-        return self._ro[self._pairs.transposed]
-
-    @cached_property
-    def _zz(self) -> np.ndarray:
-        return self._entries(ZZ)
-
-    @cached_property
-    def _zo(self) -> np.ndarray:
-        return self._entries(ZO)
-
-    @cached_property
-    def _oo(self) -> np.ndarray:
-        return self._entries(OO)
+    def _of_meridian(self) -> tuple[np.ndarray, ...]:
+        """RZ and ZO, each with its transpose."""
+        rz, zo = map(self._entries, (RZ, ZO))
+        return rz, rz[self._pairs.transposed], zo, zo[self._pairs.transposed]

@@ -40,7 +40,7 @@ def basis_of(
 
     from flexspline.fea.own_assembly import KeptMapping
 
-    points, weights = quadrature or tet_rule(4)
+    points, weights = quadrature or tet_rule()
     element = ElementTetP2()
     return Basis(
         curved, element, mapping=KeptMapping(curved, element, ElementTriP2()),
@@ -79,12 +79,12 @@ def reference_values(points: np.ndarray) -> np.ndarray:
     return np.stack([element.lbasis(points.T, i)[0] for i in range(10)], axis=1)
 
 
-def tet_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Quadrature points (q, 3) and weights (q,) on the reference tetrahedron."""
+def tet_rule() -> tuple[np.ndarray, np.ndarray]:
+    """Quadrature points (q, 3) and weights (q,) of degree 4 on the reference tetrahedron."""
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTet
 
-    points, weights = get_quadrature(RefTet, degree)
+    points, weights = get_quadrature(RefTet, 4)
     return points.T, weights
 
 
@@ -102,5 +102,5 @@ def jacobian_ratio(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
     1 for straight edges, 0 or less where curving has folded the element.
     """
-    dets = determinants(nodes, cells, np.vstack([NODES, tet_rule(4)[0]]))
+    dets = determinants(nodes, cells, np.vstack([NODES, tet_rule()[0]]))
     return dets.min(axis=1) / np.abs(dets).max(axis=1)

@@ -52,7 +52,7 @@ class SolidSpace:
     @property
     def volumes(self) -> np.ndarray:
         """Volumes of the curved elements (m,) [mm³]."""
-        points, weights = tet_rule(4)
+        points, weights = tet_rule()
         curved = self.curved
         return determinants(curved.doflocs.T, curved.dofs.element_dofs.T, points) @ weights
 
