@@ -85,7 +85,7 @@ class PardisoFactors:
         return True
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """K⁻¹ f (N,) or (N, k), in double whatever the factors are."""
+        """Return K⁻¹ f (N,) or (N, k), in double precision whatever the factors are."""
         b = np.asfortranarray(right, self._type)
         x = np.zeros_like(b)
         self._do(SUBSTITUTE, b, x)
@@ -161,7 +161,7 @@ def _said(error: int, unknowns: int) -> SolveError:
 
 @cache
 def pardiso() -> Any:
-    """MKL's routine of that name, or None where MKL does not exist."""
+    """Return MKL's routine of that name, or None where MKL does not exist."""
     library = mkl()
     if library is None:
         return None

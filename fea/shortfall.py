@@ -21,7 +21,7 @@ class ToleranceError(ComputationError):
 
 
 def settled(stiffness: Stiffness) -> Stiffness:
-    """A stiffness within the tolerance that was asked for.
+    """Return the stiffness, if it is within the tolerance that was asked for.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def settled(stiffness: Stiffness) -> Stiffness:
 
 
 def settled_peak(peak: StressPeak) -> StressPeak:
-    """A peak that stays within its tolerance on finer meshes: it has no bounds to say how far it may move.
+    """Return the peak, if it is within its tolerance; a peak has no bounds that say how far it may move.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def settled_peak(peak: StressPeak) -> StressPeak:
 
 
 def missing_because(fault: FlexsplineError | MemoryError) -> Shortfall:
-    """Of a figure that is missing for this fault."""
+    """Return the reason of a figure that is missing because of this fault."""
     return Shortfall(_words(fault), _is_of_the_machine(fault))
 
 
@@ -75,6 +75,6 @@ def largest_mesh(elements: int, most: int) -> Shortfall:
 
 
 def last_mesh(meshes: int) -> Shortfall:
-    """So many meshes are solved and no more."""
+    """The given number of meshes is solved, and there are no more."""
     solved = "1 mesh" if meshes == 1 else f"{meshes} meshes"
     return Shortfall(f"no finer mesh is made of this part for this load case, after {solved}")

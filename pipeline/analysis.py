@@ -63,7 +63,7 @@ def stiffnesses(
     solved: Callable[[PartModel], None] = lambda part: None,
     begun: Callable[[], None] = lambda: None,
 ) -> Stiffnesses:
-    """All that `flexspline stiffness` answers, for the parts that are asked for.
+    """Solve all figures of `flexspline stiffness`, for the parts that are asked for.
 
     What fails is absent, with its reason in `missing`; the rest is there. `solved` is told each part
     after its K, by one of two threads. `begun` is called before the solves, and after this process has been
@@ -103,7 +103,7 @@ def run(
     on_field: Callable[[str, SolidField], None] = lambda name, field: None,
     begun: Callable[[], None] = lambda: None,
 ) -> RunResult:
-    """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
+    """Solve all of `flexspline run`: stiffnesses, three stress fields, backlash sum, whole gear.
 
     A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `on_field` is
     given each of `RunResult.fields` as soon as it is there, by one of two threads. `begun`: as of
@@ -155,5 +155,5 @@ def _gear(context: AnalysisContext) -> GearCurve:
 
 
 def backlash_of(design: Design, result: Stiffnesses) -> Backlash:
-    """The four-term sum with the stiffnesses found."""
+    """Return the four-term sum [arcsec] with these stiffnesses."""
     return backlash(design, result.in_sum(design).K_Nm_per_rad, result.K_e.K_Nm_per_rad)

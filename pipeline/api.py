@@ -30,7 +30,7 @@ def stiffness(
     part: PartName = "flexspline",
     case: Literal["uniform"] | RimCase = "uniform",
 ) -> Stiffness:
-    """Torsional stiffness of a part with its error bounds.
+    """Return the torsional stiffness of a part with its error bounds [N·m/rad].
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
 
 
 def backlash(design: Design, K_b: float | None = None, K_e: float | None = None) -> Backlash:
-    """The four-term sum in arcsec; K_b, K_e [N·m/rad] of the flexspline and the shaft, by FE where not given.
+    """Return the four-term sum in arcsec; K_b, K_e [N·m/rad] of flexspline and shaft, by FE where not given.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
 
 
 def gear(design: Design) -> GearCurve:
-    """The whole gear with its wave generator locked: torque-angle curve, K1, K2, K3, lost motion.
+    """Solve the whole gear with its wave generator locked: torque-angle curve, K1, K2, K3, lost motion.
 
     Returns
     -------
@@ -187,7 +187,7 @@ def gear(design: Design) -> GearCurve:
 
 
 def sensitivity(design: Design) -> tuple[Slope, ...]:
-    """dK/dp of every length of both parts, the strongest first within a part; holes are left out.
+    """Return dK/dp of every length of both parts, the strongest first within a part; holes are left out.
 
     Raises
     ------

@@ -22,7 +22,7 @@ def by_harmonics(
     make: Callable[[Meridian, Deadline], T],
     **more: float,
 ) -> T:
-    """A figure of the meridian; `more` is what it depends on beside the part."""
+    """Return a figure of the meridian; `more` is what it depends on beside the part."""
     context = flexspline.context
 
     def timed() -> T:
@@ -40,7 +40,7 @@ def rim_by_harmonics(
     far_below_Nm_per_rad: float = 0.0,
     far_bounds_pct: float = 0.0,
 ) -> Stiffness:
-    """K_b of a body of revolution in a load case that `solve` answers; errors as of that.
+    """Return K_b of a body of revolution in a load case that `solve` answers; errors are those of `solve`.
 
     Where K is certainly below `far_below_Nm_per_rad`, bounds `far_bounds_pct` apart [% of K] are enough.
     """

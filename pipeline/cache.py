@@ -33,7 +33,7 @@ FORMAT = 31
 
 
 class KeyedLocks:
-    """One for each key. A value asks only for values of earlier stages, so none waits in a circle."""
+    """One lock for each key. A value asks only for values of earlier stages, so none waits in a circle."""
 
     def __init__(self) -> None:
         self._own = Lock()
@@ -77,7 +77,7 @@ def _given(path: Path | None, value: Any) -> None:
 
 @dataclass(frozen=True)
 class Cache:
-    """Entries below `folder`."""
+    """A cache of entries below `folder`."""
 
     folder: Path
     notice: Callable[[str], None] = print
@@ -97,7 +97,7 @@ class Cache:
         make: Callable[[], T],
         is_lasting: Callable[[T], bool] = lambda _: True,
     ) -> tuple[T, bool]:
-        """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
+        """Return the stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
 
         A value that is not lasting is kept as long as this object and not on disk: another run may do better.
         Of two threads that ask for one value, or of a process and its copy, the second waits for the first.
@@ -203,7 +203,7 @@ _MISSING: Any = object()
 
 
 def content_key(inputs: Mapping[str, Any]) -> str:
-    """SHA-256 of the inputs' canonical JSON; floats enter with all their digits."""
+    """Return the SHA-256 of the inputs' canonical JSON; floats enter with all their digits."""
     text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), default=_plain)
     # 160 bits: no two inputs ever meet by chance, and names of files stay short
     return hashlib.sha256(text.encode()).hexdigest()[:40]

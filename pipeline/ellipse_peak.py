@@ -30,7 +30,7 @@ SEAT_TOLERANCE = 0.02
 
 
 def ellipse_peak(flexspline: PartModel) -> StressPeak:
-    """By the model that the part's stiffness uses.
+    """Return the peak stress on the wave generator's ellipse, by the model that the part's stiffness uses.
 
     Where the solid model is needed for the stress at the holes alone, and fails, the peak is that without
     holes, and its `shortfall` says so.
@@ -56,7 +56,8 @@ def ellipse_peak(flexspline: PartModel) -> StressPeak:
 
 
 def ellipse_field(flexspline: PartModel) -> SolidField:
-    """The field for pictures and files; its peak from the model that answers. Errors as `ellipse_peak`."""
+    """Return the field for pictures and files, with the peak of the model that answers. Errors as
+    `ellipse_peak`."""
     if flexspline.axisymmetric:
         return replace(coarse_ellipse(flexspline), peak=ellipse_peak(flexspline))
     agreed = _by_two_bodies(flexspline)
@@ -66,7 +67,7 @@ def ellipse_field(flexspline: PartModel) -> SolidField:
 
 
 def half_seat_peak(flexspline: PartModel) -> StressPeak:
-    """The ellipse's peak on a seat half as wide, holes left out.
+    """Return the ellipse's peak on a seat half as wide, without holes.
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """

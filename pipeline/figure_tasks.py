@@ -32,7 +32,7 @@ class Figures:
     missing: dict[str, Shortfall] = field(default_factory=dict)
 
     def add(self, other: Figures) -> None:
-        """What another task found."""
+        """Add the figures of another task."""
         self.K |= other.K
         self.peaks |= other.peaks
         self.missing |= other.missing
@@ -49,7 +49,7 @@ class _TaskResult:
 
 
 class FigureTasks:
-    """What is asked for, long ones first, so that both processes or threads end together.
+    """The tasks of a command, long ones first, so that both processes or threads end together.
 
     Lift-off has no solid model: it stands between two cases that may have large ones, of which one waits for
     the other (`fea.solid.alone`).
@@ -63,12 +63,12 @@ class FigureTasks:
         self._process = os.getpid()
 
     def add_part(self, name: str, part: PartModel) -> None:
-        """K of a part, by the name of the figure."""
+        """Add a task for K of a part, under the name of the figure."""
         self._parts[len(self._tasks)] = part
         self._add(name, partial(part_stiffness, part))
 
     def add_rim(self, rim: PartModel) -> None:
-        """What the lobes and the ellipse do to the rim."""
+        """Add tasks for the lobe cases and the peaks on the wave generator."""
         for case in RIM_CASES:
             self._add(figure_of(case), partial(rim_stiffness, rim, case))
         self._add("wave_generator_peak", partial(ellipse_peak, rim))
@@ -78,7 +78,7 @@ class FigureTasks:
         self._tasks.append(partial(self._result, partial(_attempt, name, solve)))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
-        """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
+        """Run all tasks and return their figures; errors as of the tasks. `begun`: as of `results_of`."""
         figures = Figures()
 
         def take_in(number: int, result: _TaskResult) -> None:

@@ -28,7 +28,7 @@ def resting_with_holes(
     held: TwoBodies,
     held_of_part: Callable[[], Stiffness],
 ) -> Stiffness:
-    """K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
+    """Return K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
 
     `resting` and `held` are its bodies of revolution, `held_of_part` solves the part with its seat held; it
     is asked where the enclosure is wider than the tolerance only.
@@ -55,7 +55,7 @@ def resting_with_holes(
 
 
 def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
-    """K held times what lift-off leaves of it, from the bounds of the two bodies' ratios; an estimate."""
+    """Return K held times the ratio that lift-off leaves, from the two bodies' bounds; an estimate."""
     middles = [(low + high) / 2 for low, high in ratios]
     spread = RATIO_SPREAD * (max(middles) - min(middles))
     low, high = min(r[0] for r in ratios) - spread, max(r[1] for r in ratios) + spread

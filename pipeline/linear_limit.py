@@ -60,7 +60,7 @@ class LinearLimit:
 def linear_limit(
     design: Design, K_series_Nm_per_rad: float, peaks: Mapping[str, StressPeak] | None = None
 ) -> LinearLimit:
-    """The least of the torques at which the twist T/K reaches a tooth's pitch 2π/z1 or a stress its limit.
+    """Return the least torque at which T/K reaches a tooth's pitch 2π/z1 or a stress its limit [N·m].
 
     Stresses are those that equilibrium alone gives in tube, diaphragm and shaft, and of `peaks` under the
     load torque (by their names in result.json) those that are the part's; None: they were not solved. Real

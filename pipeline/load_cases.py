@@ -57,7 +57,7 @@ class RimModels:
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
-    """K_b of one lobe case, by the model that the part's stiffness uses.
+    """Return K_b of one lobe case, by the model that the part's stiffness uses.
 
     A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
     the solid model is asked for by name, its K is only checked against them. A case without a solid model is
@@ -124,7 +124,7 @@ def by_itself(
     solid: Callable[[PartModel], Stiffness] | None = None,
     with_holes: Callable[[PartModel], Stiffness] | None = None,
 ) -> RimModels:
-    """A case that `solve` answers on a meridian without another case's answer."""
+    """Return the models of a case that `solve` answers on a meridian without another case's answer."""
 
     of_part = partial(rim_by_harmonics, case=case, solve=solve)
 

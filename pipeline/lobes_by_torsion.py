@@ -27,7 +27,7 @@ ring's thickness, 0.03 %."""
 
 
 def entry_doubt(f: Flexspline) -> float:
-    """FLUSH_DOUBT where the ring begins less than its own thickness from the diaphragm or the land."""
+    """Return FLUSH_DOUBT for a ring nearer than its thickness to diaphragm or land, else ENTRY_DOUBT."""
     free = f.ring_start - max(f.hole_depth, f.diaphragm_thickness_mm)
     return ENTRY_DOUBT if free >= f.ring_thickness_mm else FLUSH_DOUBT
 
@@ -40,7 +40,7 @@ def lobes_by_torsion(
     tolerance: float,
     entry: float = ENTRY_DOUBT,
 ) -> Stiffness:
-    """K_b of the part under the lobe load; the bounds are estimates.
+    """Return K_b of the part under the lobe load; the bounds are estimates.
 
     Parameters
     ----------

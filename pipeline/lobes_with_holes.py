@@ -27,7 +27,7 @@ these are there is told by itself (`SolvedCorrection.doubt`)."""
 
 
 def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
-    """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
+    """Return K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
 
     Raises
     ------

@@ -25,7 +25,7 @@ def diagnose(
     counts_per_turn: float | None = None,
     against: Literal["sum", "gear"] = "sum",
 ) -> Diagnosis:
-    """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
+    """Find what the simulation leaves out, from a measured file; K [N·m/rad] by FE where not given.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ PACKAGE = __name__.partition(".")[0] + "."
 
 
 def packed(value: Any) -> bytes:
-    """Arrays, dataclasses of this package, mappings, sequences, bytes and plain values, nested at will."""
+    """Pack arrays, dataclasses of this package, mappings, sequences, bytes and plain values, nested."""
     arrays: dict[str, np.ndarray] = {}
     text = json.dumps(_encode(value, arrays)).encode()
     data = io.BytesIO()
@@ -28,7 +28,7 @@ def packed(value: Any) -> bytes:
 
 
 def unpacked(data: bytes) -> Any:
-    """What was packed; sequences come as tuples.
+    """Return what was packed; sequences come as tuples.
 
     Raises
     ------

@@ -48,7 +48,7 @@ class ProcessId:
 
     @property
     def fate(self) -> Fate:
-        """Whether the process still runs; unknown where this one cannot see it."""
+        """Return whether the process still runs; unknown where this one cannot see it."""
         current = this_process()
         if UNKNOWN in (self.machine, self.space, current.machine, current.space):
             return "unknown"
@@ -63,13 +63,13 @@ class ProcessId:
 
 
 def this_process() -> ProcessId:
-    """The process that asks."""
+    """Return the id of the process that asks."""
     pid = os.getpid()
     return ProcessId(_machine(), _space(), pid, started(pid) or UNKNOWN)
 
 
 def parsed(text: str) -> ProcessId | None:
-    """A process by its text; what follows it is not looked at. None if the text is another."""
+    """Return a process from its text; what follows it is not looked at. None if the text is another."""
     match = _TEXT.match(text)
     return ProcessId(match[1], match[2], int(match[3]), match[4]) if match else None
 
@@ -112,7 +112,7 @@ def _exists(pid: int) -> bool:
 
 
 def started(pid: int) -> str | None:
-    """When a process started; None if it is no more, a zombie among them.
+    """Return when a process started; None if it has ended, or is a zombie.
 
     On Linux the kernel's own count: psutil adds the time of the boot, which moves with the clock.
     """

@@ -23,32 +23,32 @@ KEPT_FIELDS = 32
 
 
 def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
-    """The peak stress on the wave generator's ellipse; errors as `torsion`."""
+    """Return the peak stress on the wave generator's ellipse; errors as `torsion`."""
     return _ellipse_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def half_seat_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
-    """The same on a seat half as wide as the ring; errors as `torsion`."""
+    """Return the ellipse's peak on a seat half as wide as the ring; errors as `torsion`."""
     return _half_seat_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def torque_peak(part: Part, torque_Nm: float, tolerance: float) -> StressPeak:
-    """The peak stress under a torque; errors as `torsion`."""
+    """Return the peak stress under a torque; errors as `torsion`."""
     return _torque_peak(_body(part), tolerance).times(torque_Nm)
 
 
 def ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
-    """Displacement and stress on the wave generator's ellipse; errors as `torsion`."""
+    """Return displacement and stress on the wave generator's ellipse; errors as `torsion`."""
     return _on_ellipse(part, w0_mm, _ellipse_field(_body(part), tolerance))
 
 
 def first_ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
-    """`ellipse_field` before any refinement; asked for before it, or the work is done twice."""
+    """Return `ellipse_field` before any refinement; ask for it first, or the work is done twice."""
     return _on_ellipse(part, w0_mm, _begun(_body(part), tolerance).newest)
 
 
 def torque_field(part: Part, torque_Nm: float, tolerance: float) -> RevolvedField:
-    """Displacement and stress under a torque; errors as `torsion`."""
+    """Return displacement and stress under a torque; errors as `torsion`."""
     unit = _torque_field(_body(part), tolerance)
     return _loaded(unit, torque_Nm, torque_Nm / part.material.youngs_modulus_GPa)
 

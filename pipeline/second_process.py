@@ -54,7 +54,7 @@ def results_of(
     begun: Callable[[], None] = lambda: None,
     on_result: Callable[[int, T], None] = lambda number, result: None,
 ) -> list[T]:
-    """What each task returns, in their order; a task must change nothing that others look at.
+    """Return the result of each task, in order; a task must change nothing that others look at.
 
     A second process takes those not yet begun, if there may be one. Where it fails, whatever the reason, its
     tasks are done here once more, and what they raise then is raised. `begun` is called here after it began,

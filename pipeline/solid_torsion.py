@@ -94,7 +94,7 @@ class TurnedField:
 
     @classmethod
     def of(cls, solved: SolvedStiffness) -> TurnedField:
-        """Of a solution."""
+        """Return the field of a solution."""
         return cls(solved.displacement, solved.K_energy)
 
 
@@ -144,7 +144,7 @@ def twisted(
     seconds: float = SOLID_SECONDS,
     second_s: float = MESHER_SECONDS,
 ) -> TwistedPart:
-    """Turned by 1 rad, refined until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
+    """Turn by 1 rad; refine until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
 
     `second_s`: of fTetWild for a mesh with longer edges.
 

@@ -33,7 +33,7 @@ class StiffnessPair:
 
 
 def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
-    """Both K [N·m/rad] as the user gives them, as doubles; None where one is to be solved.
+    """Return both K [N·m/rad] that the user gave, as doubles; None where one is to be solved.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
 def stiffness_pair(
     context: AnalysisContext, K_b: float | None = None, K_e: float | None = None
 ) -> StiffnessPair:
-    """The K given [N·m/rad], and by FE those that are not; a K given has no error of the solver.
+    """Return both K [N·m/rad], by FE where not given; a K that is given has no error of the solver.
 
     Raises
     ------

@@ -25,7 +25,7 @@ from flexspline.pipeline.wave_generator import sharp_edges
 
 
 def torque_field(model: PartModel) -> SolidField:
-    """Displacement and stress under the design's torque T_L; the peak from the model that answers.
+    """Return displacement and stress under the torque T_L, with the peak of the model that answers.
 
     That of a flexspline with bolt holes is told by two bodies of revolution where these agree: a solid mesh's
     nodes beside the edge of the held face, where it often is, were up to a fifth off.

@@ -36,7 +36,7 @@ DIFFER = Shortfall(f"{LESS} and {MORE} differ by more")
 
 
 def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
-    """A shaft turned by 1 rad: by sweeps, else between two without fillets, else by fTetWild.
+    """Turn a shaft by 1 rad: by sweeps, else between two without fillets, else by fTetWild.
 
     Where those two differ by much, fTetWild comes before them.
 
@@ -65,7 +65,7 @@ def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
 
 
 def marked_unfilleted(field: SolidField) -> SolidField:
-    """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
+    """Return a cut body's field as one of the shaft; its peak is compared with no limit."""
     peak = field.peak
     excluded = f"{peak.excluded}, and {FILLETS}, which the mesh leaves out"
     judged = replace(peak, excluded=excluded, at_excluded_border=True, left_out=FILLETS)

@@ -44,7 +44,7 @@ PLACE_TOLERANCE = 0.02
 
 
 def solid_ellipse(flexspline: PartModel) -> SolidField:
-    """The field of `ellipse` on the flexspline's quarter or half.
+    """Return the field of `ellipse` on the flexspline's quarter or half.
 
     A swept part is meshed again, fine where the peak of the part without its holes is; should the peak
     turn up elsewhere, there too. Any other part is solved on the mesh that gave K.
@@ -70,7 +70,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
 
 def coarse_ellipse(flexspline: PartModel) -> SolidField:
-    """The same on the mesh that gave K, or on a coarser one, for pictures: another model gives the peak."""
+    """Return the field on K's mesh or a coarser one, for pictures: another model gives the peak."""
     w0 = flexspline.context.design.w0_mm
 
     def make() -> SolidField:
@@ -142,5 +142,5 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
 
 
 def sharp_edges(model: PartModel, meshed: MeshedPart) -> SharpEdges:
-    """The stress rule's edges and its distance."""
+    """Return the stress rule's edges and its distance."""
     return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, model.part.exclusion_mm)

@@ -46,7 +46,7 @@ class BlockPlaces:
 
     @classmethod
     def of(cls, rows: np.ndarray, columns: np.ndarray, count: int) -> BlockPlaces:
-        """Of pairs (row, column) of `count` nodes, in the order of the rows, then of the columns."""
+        """Find the places for pairs (row, column) of `count` nodes, ordered by rows, then by columns."""
         blocks = np.bincount(rows, minlength=count)
         before = np.cumsum(blocks) - blocks
         first = 9 * before[rows] + 3 * (np.arange(len(rows)) - before[rows])
@@ -65,7 +65,7 @@ class Couplings:
     material: Elastic
 
     def stiffness(self, n: int, components: tuple[int, ...], around: float) -> csr_matrix:
-        """Stiffness (3·count, 3·count) between components of harmonic n, with `around` for ∫cos² nφ dφ.
+        """Return the stiffness (3·count, 3·count) between components of harmonic n; `around` is ∫cos² nφ dφ.
 
         Unknown 3·node + component; entries of components that are not asked for are 0.
         """

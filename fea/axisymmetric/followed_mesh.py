@@ -11,7 +11,7 @@ from flexspline.geometry.outline import Meridian
 
 
 def followed(mesh: MeridianMesh, outline: Meridian) -> MeridianMesh:
-    """The mesh on another outline with as many segments, a small step away.
+    """Return the mesh on another outline with as many segments, a small step away.
 
     Boundary vertices keep their place along their segment; inner ones follow their neighbours.
     """

@@ -24,7 +24,7 @@ methods (S. J. Wright, Primal-Dual Interior-Point Methods, SIAM 1997)."""
 
 
 def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Forces p (n,) ≥ 0 that leave gaps free + matrix @ p ≥ 0 and act only where the gap is closed.
+    """Return forces p (n,) ≥ 0 that leave gaps free + matrix @ p ≥ 0 and act only where a gap is closed.
 
     `matrix` (n, n) is symmetric and positive definite; `free` (n,) are the gaps without forces.
 

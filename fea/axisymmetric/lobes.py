@@ -81,12 +81,12 @@ class LobeSolution:
 
     @property
     def estimate(self) -> float:
-        """Relative error of the energy that the recovery sees."""
+        """Relative error of the energy by the recovery estimate."""
         return float(self.error.sum()) / (2 * sum(self.energies))
 
 
 def lobe_coefficient(n: int) -> float:
-    """t_n of two bumps of height 1, n even: 1/π ∫ t cos nφ dφ, half of it for n = 0.
+    """Return t_n of two bumps of height 1, n even: 1/π ∫ t cos nφ dφ, half of it for n = 0.
 
     One bump's integral is p² sin nφ0 / (n (p² - n²)) with p = π/φ0; φ0 for n = 0, φ0/2 for n = p.
     """
@@ -99,7 +99,7 @@ def lobe_coefficient(n: int) -> float:
 
 
 def lobe_harmonic(n: int) -> Harmonic:
-    """The load's harmonic n; of n = 0 it is torsion."""
+    """Return the load's harmonic n; for n = 0 it is torsion."""
     return Harmonic(n, torsion=n == 0)
 
 
@@ -122,7 +122,7 @@ def solved_lobes(
     boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedLobes]:
-    """The fields of the last of `lobe_stiffnesses`, on meshes finer and finer in boxes.
+    """Yield the lobes' fields on meshes that become finer and finer in boxes.
 
     As of `torsion.solved_torsions`.
 
@@ -142,7 +142,7 @@ def lobe_stiffnesses(
     relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[Stiffness]:
-    """K_b under the lobe load, as each mesh gives it.
+    """Yield K_b under the lobe load for each mesh.
 
     `supported`: the seat may not move radially, else it is free.
 

@@ -33,7 +33,7 @@ class StressError(ComputationError):
 
 @dataclass(frozen=True)
 class MeridianPeak:
-    """Largest von Mises stress that counts.
+    """The largest von Mises stress beyond the excluded distance.
 
     Attributes
     ----------

@@ -70,7 +70,7 @@ class StressProblem:
     deadline: Deadline = NO_DEADLINE
 
     def field(self) -> RevolvedField:
-        """The answer.
+        """Refine until the peak is within the tolerance, and return the last field.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class StressProblem:
         return meshed.field(shortfall)
 
     def fields(self) -> Iterator[RevolvedField]:
-        """The results of each mesh whose peak counts; the last one is `field`. Errors as there."""
+        """Yield the field of each mesh whose peak counts; the last one is `field`, and so are the errors."""
         meshed = _MeshedField(self)
         mesh = triangulate(self.outline)
         for shortfall in refinements(meshed, mesh, self.deadline, MOST_TRIANGLES):

@@ -44,17 +44,17 @@ class Recovered:
 
     @cached_property
     def energy(self) -> np.ndarray:
-        """(m,) ∫σ:C⁻¹:σ of each triangle, whole circle [N·mm]."""
+        """∫σ:C⁻¹:σ of each triangle (m,) over the whole circle [N·mm]."""
         return self._twice_energy(self.raw)
 
     @cached_property
     def error(self) -> np.ndarray:
-        """(m,) the same of smoothed less raw stress."""
+        """The same integral (m,) of smoothed less raw stress [N·mm]."""
         return self._twice_energy(self.misfit)
 
     @cached_property
     def largest_misfit(self) -> np.ndarray:
-        """(m,) largest von Mises stress of smoothed less raw stress in each triangle [MPa]."""
+        """Largest von Mises stress of smoothed less raw stress in each triangle (m,) [MPa]."""
         return np.sqrt(np.maximum(*mises_parts(self.misfit)).max(axis=1))
 
     def _twice_energy(self, stress: Parts) -> np.ndarray:
@@ -75,7 +75,7 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
 
 
 def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
-    """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
+    """Return amplitudes (m, q) [MPa] of the harmonic's stresses from U, V, W (3·count,) [mm]."""
     r = np.asarray(basis.global_coordinates())[0]
     amplitude = displacement.reshape(-1, 3).T
     seen = {component: basis.interpolate(amplitude[component]) for component in wave.components}
@@ -83,7 +83,7 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
 
 
 def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[int, Any]) -> Parts:
-    """Amplitudes [MPa] at radii r [mm] of scikit-fem's fields U, V, W [mm] there, by their component."""
+    """Return stress amplitudes [MPa] at radii r [mm] from scikit-fem's fields U, V, W [mm] there."""
     lam, mu, n = material.lam, material.mu, wave.n
     if wave.torsion:
         v = seen[TANGENTIAL]
@@ -115,7 +115,7 @@ def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:
 
 
 def mises_parts(stress: Parts) -> tuple[np.ndarray, np.ndarray]:
-    """A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ; absent stresses are 0."""
+    """Return A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ; absent stresses are 0."""
     none = np.zeros_like(next(iter(stress.values())))
     rr, tt, zz, rz, rt, tz = (stress.get(k, none) for k in range(6))
     direct = ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) / 2 + 3 * rz**2

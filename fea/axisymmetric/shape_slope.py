@@ -23,7 +23,7 @@ from flexspline.geometry.outline import Meridian
 
 
 def moved_stiffness(solved: Twist, outline: Meridian) -> float:
-    """Twice the energy per rad² [N·m/rad] of the held field on another outline, a small step away.
+    """Return twice the energy per rad² [N·m/rad] of the held field on another outline, a small step away.
 
     Raises
     ------

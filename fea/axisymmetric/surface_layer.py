@@ -24,7 +24,7 @@ class HeldSurfaceError(ComputationError):
 
 
 def layer_stiffness(solved: Twist, outline: Meridian) -> float:
-    """Stiffness that the thin layers between the solved and another outline add [N·m/rad], to first order.
+    """Return the stiffness of the layers between the solved and another outline [N·m/rad], first order.
 
     On a free surface only the strain along it is left, γ = r ∂ψ/∂s; dA = 2πr ds.
 

@@ -38,7 +38,7 @@ def torsional_stiffness(
     relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
-    """Torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
+    """Return the torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
 
     `driven` is "mesh" for a flexspline, "grip" for a shaft. `relative_width` is the wanted
     (upper - lower)/K as a fraction (0.001 is 0.1 %); the mesh is refined where the two fields
@@ -75,7 +75,7 @@ def solved_torsions(
     boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedTorsion]:
-    """`torsional_stiffness` with its field, on meshes whose triangles in boxes become finer and finer.
+    """Yield `torsional_stiffness` with its field, on meshes that become finer and finer in boxes.
 
     Edges there are as the boxes ask on the first, and half as long on each mesh after it, until a third one
     would have more than MOST_TRIANGLES_WITHIN triangles.

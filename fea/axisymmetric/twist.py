@@ -36,7 +36,7 @@ class Twist:
 
 
 def twist(outline: Meridian, material: Elastic, driven: str, relative_error: float) -> Twist:
-    """Refined until the recovery estimate of K's relative error is below `relative_error`.
+    """Solve torsion; refine until the estimated relative error of K is below `relative_error`.
 
     Raises
     ------

@@ -33,14 +33,14 @@ class Simplices:
     parents: np.ndarray | None = None
 
     def edges(self) -> np.ndarray:
-        """(e, 2), each once, the lesser node first."""
+        """Each edge once (e, 2), the lesser node first."""
         return distinct_edges(self.tets[:, PAIRS], self.nodes)
 
 
 def halved(
     mesh: Simplices, edges: np.ndarray, lengths: np.ndarray, marked: np.ndarray
 ) -> tuple[Simplices, np.ndarray]:
-    """The mesh with those of its edges (e, 2) halved that are `marked` (e,); `lengths` (e,) rank them.
+    """Halve those edges (e, 2) of the mesh that are `marked` (e,); `lengths` (e,) rank them.
 
     Also returns the halved edges (j, 2). Their new middle nodes are numbered from `mesh.nodes` on, in this
     order.

@@ -63,7 +63,7 @@ class HoledColumn:
         return COLUMN_CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
 
     def plan(self, sector_rad: float, arc_rad: float = LARGEST_ARC) -> Meridian:
-        """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
+        """Return the outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
 
         No arc about the axis is longer than `arc_rad`.
 
@@ -89,7 +89,7 @@ class HoledColumn:
         return Meridian(tuple(segments))
 
     def rest(self, outline: Meridian) -> Meridian:
-        """The outline beyond the interface, closed by segments named INTERFACE."""
+        """Return the outline beyond the interface, closed by segments named INTERFACE."""
         outside = self.interface == self.outer
 
         def beyond(r: float) -> bool:
@@ -130,7 +130,7 @@ class HoledColumn:
 
 
 def column_of(part: Part) -> HoledColumn | None:
-    """The column around the bolt circle; None where the meridian is no plain rectangle there.
+    """Return the column around the bolt circle; None where the meridian is no plain rectangle there.
 
     That is where a step or an arc of it lies over the holes, where it has steps to both sides of them,
     or where their land is too narrow.

@@ -33,19 +33,17 @@ HALF_DEG = 180.0
 
 
 def repeats_of(mesh: TetMesh) -> int:
-    """Number of repeats n of the part whose half repeat this mesh is; 1 for a mesh of a half or of the whole
-    part."""
+    """Return the number of repeats n of the part of which the mesh is half a repeat; 1 for a half or all."""
     return max(1, round(HALF_DEG / mesh.sector_deg))
 
 
 def larger_deg(mesh: TetMesh) -> float:
-    """Angle [deg] of the sector that represents the part under two lobes: a quarter if n is even, else
-    half."""
+    """Return the sector [deg] that stands for the part under two lobes: a quarter if n is even, else half."""
     return max(mesh.sector_deg, HALF_DEG if repeats_of(mesh) % 2 else HALF_DEG / 2)
 
 
 def half_repeat(mesh: TetMesh) -> TetMesh:
-    """The mesh; its part's half where n is odd and the part has an axis.
+    """Return the mesh, or that of the part's half where n is odd and the part has an axis.
 
     On half a repeat a wave of order 1 moves the axis sideways, which would couple its two fields there.
     """
@@ -98,7 +96,7 @@ class WaveSupports:
             self.set(axis, component)
 
     def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
-        """`value` [mm] is the wave's, complex where the wave is."""
+        """Prescribe `value` [mm] of the wave; it is complex where the wave is."""
         turned = self._turned(np.broadcast_to(value, nodes.shape), nodes)
         for part, values in zip(self._parts, (turned.real, turned.imag), strict=False):
             part.set(nodes, component, values)
@@ -124,7 +122,7 @@ class WaveSupports:
         return phases
 
     def solve(self, load: np.ndarray) -> SolvedWave:
-        """`load` (n, 3) N, the wave's share of the nodal forces on half a repeat.
+        """Solve under `load` (n, 3) N, the wave's share of the nodal forces on half a repeat.
 
         Raises
         ------

@@ -33,7 +33,7 @@ FACTORED_STEPS = 30
 
 @contextmanager
 def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
-    """K⁻¹ as a function of the right-hand side (N,), for as long as the context lasts.
+    """Give K⁻¹ as a function of the right-hand side (N,), for as long as the context lasts.
 
     `single`: in single precision, where MKL is and that finds K positive definite.
 

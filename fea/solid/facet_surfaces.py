@@ -11,7 +11,7 @@ from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface
 
 
 def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surface]) -> np.ndarray:
-    """Index (k,) of the surface that each face's corners lie on exactly; of several, its centre decides.
+    """Return the surface (k,) on which each face's corners lie exactly; of several, its centre decides.
 
     Of two that coincide, the planes of a half part, it is the first, as in `geometry.tagged`.
 
@@ -38,6 +38,6 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
 def patches_of(
     facet_surface: np.ndarray, surfaces: Sequence[Surface]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Number (k,) of each facet's patch in a list of names, and the names, "" first: no patch."""
+    """Return the number (k,) of each facet's patch, and the patches' names; "" comes first: no patch."""
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     return np.array([names.index(s.patch) for s in surfaces])[facet_surface], names

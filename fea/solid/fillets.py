@@ -38,13 +38,13 @@ class Fillet:
         return low, high
 
     def height(self, r: np.ndarray) -> np.ndarray:
-        """z of the arc [mm] at radii from `r` to `far`."""
+        """Return z of the arc [mm] at radii from `r` to `far`."""
         across = np.clip(self.far - r, 0.0, self.radius)
         return self.z + self.up * (self.radius - np.sqrt(self.radius**2 - across**2))
 
 
 def fillets_of(shape: Shaft) -> list[Fillet]:
-    """Those of a shaft, from the flange on."""
+    """Return the fillets of a shaft, from the flange on."""
     if shape.fillet_mm <= SAME_mm:
         return []
     fillets, z = [], 0.0

@@ -47,7 +47,7 @@ HALVING_ROUNDS = 40
 def finer_by_error(
     part: Part, mesh: BisectableMesh, error: np.ndarray, wanted: float
 ) -> BisectableMesh:
-    """The mesh with so many elements as are `wanted`, shorter edges where its elements' errors (m,) are.
+    """Return a mesh with `wanted` elements, with shorter edges where the elements' errors (m,) are large.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class Iterated:
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> float:
-    """a·b by one thread. BLAS would start its own threads, whose waiting slows oneMKL's products."""
+    """Return a·b, by one thread. BLAS would start its own threads, whose waiting slows oneMKL's products."""
     return float(np.einsum("i,i", a, b))
 
 
@@ -40,7 +40,7 @@ def conjugate_gradients(
     allowed: Callable[[np.ndarray], float] = lambda x: 0.0,
     worth: float = inf,
 ) -> Iterated:
-    """At most `most` steps for K x = f from x = 0, until the error's energy is below `allowed` at that x.
+    """Take at most `most` steps for K x = f from x = 0, until the error's energy is below `allowed`.
 
     It ends early if the rate of its later half predicts more than `worth` further steps.
 

@@ -27,7 +27,7 @@ WHOLE_STEP = 1.01
 def graded(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], grading: Grading, most: float
 ) -> tuple[np.ndarray, Simplices]:
-    """Edges halved until none is longer than the grading asks; new nodes of the boundary on its surfaces."""
+    """Halve edges until none is longer than the grading asks; new boundary nodes are on its surfaces."""
     for _ in range(GRADING_ROUNDS):
         edges = mesh.edges()
         seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
@@ -48,7 +48,7 @@ def graded(
 def with_middles_of(
     points: np.ndarray, mesh: Simplices, cut_edges: np.ndarray, surfaces: Sequence[Surface]
 ) -> np.ndarray:
-    """Points with those between edges' ends: at half the angle, or on the surfaces of the boundary.
+    """Add points between the ends of edges: at half the angle, or on the surfaces of the boundary.
 
     Straight middles are kept where another place would flatten a tetrahedron; the next round tries again.
     """

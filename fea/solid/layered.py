@@ -31,7 +31,7 @@ from flexspline.geometry.surfaces import part_surfaces
 def layered_mesh(
     part: Part, sector_deg: float, spec: MeshSpec, most_elements: float = inf
 ) -> BisectableMesh:
-    """Mesh of a shaft's sector, graded as `spec` says.
+    """Return the mesh of a shaft's sector, graded as `spec` says.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def _sizes(layers: Layers) -> dict[str, float]:
 
 
 def layered_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
-    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges, as `TaggedSurface.sharp_edges`.
+    """Return points (k, 3) every `spacing` mm along the sharp edges and patch edges of a shaft in layers.
 
     Raises
     ------

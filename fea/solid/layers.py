@@ -42,7 +42,7 @@ class Layers:
 
     @classmethod
     def of(cls, part: Part, sector_rad: float) -> Layers:
-        """Of a shaft."""
+        """Find the layers of a shaft's sector."""
         assert isinstance(part.shape, Shaft)
         tubes, z = [], 0.0
         for i, s in enumerate(part.shape.segment):
@@ -53,7 +53,7 @@ class Layers:
 
     @property
     def radii(self) -> list[float]:
-        """Of all rings [mm], rising; the first is the bore's, or the core's."""
+        """Radii of all rings [mm], rising; the first is the bore's, or the core's."""
         all_radii = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
         all_radii |= {r for f in self.fillets for r in (f.middle, f.far)}
         rising = _distinct(all_radii)
@@ -72,7 +72,7 @@ class Layers:
         return any(bore == 0 for *_, bore, _ in self.tubes)
 
     def levels(self, far: float) -> list[float]:
-        """z [mm] of all cross-sections' ends, and between them no farther apart than `far` asks."""
+        """Return z [mm] of all cross-sections' ends, and levels between them as close as `far` asks."""
         grip = self.part.shape.grip_length_mm if isinstance(self.part.shape, Shaft) else 0.0
         ends = {0.0, self.part.hole_depth, self.part.length - grip, *(t[1] for t in self.tubes)}
         ends |= {z for f in self.fillets for z in f.span}
@@ -87,7 +87,7 @@ class Layers:
         return levels
 
     def curves(self) -> list[Curve]:
-        """The plan's lines."""
+        """Lines of the plan."""
         radii, sector = self.radii, self.sector
         ends = [(radii[0], radii[-1], a) for a in (0.0, sector)]
         curves: list[Curve] = [
@@ -105,7 +105,7 @@ class Layers:
         return curves
 
     def plan(self, smallest_mm: float) -> PlanMesh:
-        """Its triangles; with a fan about the axis where material reaches it.
+        """Return the plan's triangles, with a fan about the axis where material reaches it.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Layers:
         return PlanMesh(np.vstack([made.points, (0.0, 0.0)]), np.vstack([made.triangles, fan]))
 
     def within(self, plan: PlanMesh, low: float, high: float) -> np.ndarray:
-        """Mask (m,) of the plan's triangles that the layer from `low` to `high` [mm] is made of.
+        """Return the mask (m,) of the plan's triangles in the layer from `low` to `high` [mm].
 
         Corners' mean coordinates decide: a triangle of a line's chord and a point beyond lies beyond.
         """
@@ -145,7 +145,7 @@ class Layers:
         return there
 
     def prisms(self, smallest_mm: float, far: float) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.
+        """Return nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.
 
         Raises
         ------

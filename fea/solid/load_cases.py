@@ -43,7 +43,7 @@ TORQUE_OF_TRACTION = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
 
 
 def torsion(model: Model, driven: str) -> SolvedStiffness:
-    """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
+    """Hold `mount` and turn every point of `driven` rigidly about z by 1 rad; K comes from both routes.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
 def torsion_and_correction(
     model: Model, driven: str, whole: WholeTurned
 ) -> tuple[SolvedStiffness, SolvedCorrection]:
-    """`torsion`, and the change that the cuts make in the body without them, by the same factors.
+    """Return `torsion`, and the change by the cuts in the body without them, by the same factors.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def torsion_and_correction(
 
 
 def torsion_correction(model: Model, driven: str, whole: WholeTurned) -> SolvedCorrection:
-    """The change by the cuts alone; errors as of `torsion_and_correction`."""
+    """Return the change by the cuts alone; errors are those of `torsion_and_correction`."""
     walls, before = _walls_of(model, whole)
     forces = model.frames.to_cylindrical(walls.forces).ravel()
     return _correction(model, walls, before, _turned(model, driven).solve_at_rest(forces))
@@ -130,7 +130,7 @@ def _balanced(model: Model, driven: str, solution: Solution) -> SolvedStiffness:
 
 
 def lobes(model: Model, supported: bool) -> SolvedStiffness:
-    """Torque entering at the two lobes; `supported`: the seat may not move radially.
+    """Let the torque enter at the two lobes; `supported`: the seat may not move radially.
 
     The model is half a repeat of the part, as `cyclic.half_repeat`. The field is that of its quarter or half
     for a torque of 1 N·m on the whole part; K = T²/(2·strain energy).
@@ -150,7 +150,7 @@ def lobes(model: Model, supported: bool) -> SolvedStiffness:
 def lobe_correction(
     model: Model, supported: bool, whole: WholeUnderLobes, least: float = 0.0
 ) -> SolvedCorrection:
-    """What the holes change under the lobes' whole torque; model and mesh as of `lobes`.
+    """Return the change by the holes under the lobes' whole torque; model and mesh are those of `lobes`.
 
     Waves are not solved if their v together stores less than `least` [N·mm]. The most that they may store,
     LEFT_OUT times their E, is added to the doubt.
@@ -215,7 +215,7 @@ def _lobe_traction(phi: np.ndarray) -> np.ndarray:
 
 
 def ellipse(model: Model, w0_mm: float) -> Solved:
-    """`mount` held, `seat` given the radial displacement w0·cos 2φ, its other components free.
+    """Hold `mount` and give `seat` the radial displacement w0·cos 2φ; its other components are free.
 
     The model is half a repeat, the field the quarter's or half's, as of `lobes`.
     """

@@ -97,7 +97,7 @@ def lobe_stiffness(
     progress: Callable[[str], None],
     limit_s: float = inf,
 ) -> Stiffness:
-    """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
+    """Return K_b = T²/(2·strain energy) with its bounds; refine until they meet `tolerance`.
 
     The meshes are of half a repeat of the part, the levels those of its quarter or half, as `symmetry` says.
     A given load stores too little energy on a mesh, so K_h is an upper bound here too. The recovery

@@ -52,13 +52,13 @@ ENTRIES_PER_UNKNOWN = 85.0
 
 
 def direct_bytes(unknowns: int, entries: float) -> float:
-    """Memory beyond the assembled matrix to factorise it [bytes]."""
+    """Return the memory that factors need beyond the assembled matrix [bytes]."""
     triangles = 1.0 if pardiso() else LU_FACTORS
     return ENTRY_BYTES * entries + triangles * FACTOR_BYTES * unknowns ** (4 / 3)
 
 
 def iterative_bytes(unknowns: int, entries: float) -> float:
-    """Memory beyond the assembled matrix to iterate, the corners' factors included [bytes]."""
+    """Return the memory of an iteration beyond the assembled matrix, with the corners' factors [bytes]."""
     corners = direct_bytes(round(CORNER_SHARE * unknowns), entries * CORNER_SHARE / 2)
     return ITERATION_ENTRY_BYTES * entries + corners
 
@@ -75,7 +75,7 @@ def check_before_assembly(unknowns: int) -> None:
 
 
 def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False) -> SolverKind:
-    """How to solve.
+    """Return the solver that fits into memory and is expected to be faster.
 
     `corners`: the mesh's interpolation is known, so iteration is possible; `slow`: it would take many steps.
 
@@ -99,14 +99,14 @@ def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False
 
 
 def steps_of_factors(unknowns: int, entries: int) -> float:
-    """Steps of an iteration that cost as much as factors; inf where those do not fit, or are never used."""
+    """Return how many steps cost as much as factors; inf where those do not fit or are never used."""
     if unknowns > THIN_BELOW or direct_bytes(unknowns, entries) > available_bytes():
         return inf
     return STEPS_PER_ROOT * sqrt(unknowns)
 
 
 def available_bytes() -> float:
-    """Memory that this process may still take: of the machine, its container, its own limit."""
+    """Return the memory that this process may still take: of the machine, its container, its own limit."""
     return min(_machine_free_bytes(), container_free_bytes(), free_address_space_bytes())
 
 
@@ -119,7 +119,7 @@ def _machine_free_bytes() -> float:
 
 
 def container_free_bytes(folder: Path = Path("/sys/fs/cgroup")) -> float:
-    """What the control group allows less what it holds [bytes], inf where there is none.
+    """Return the control group's limit less what it holds [bytes], inf where there is none.
 
     File pages that nobody uses will give way.
     """

@@ -38,7 +38,7 @@ def stress_field(
     load_case: str,
     edges: SharpEdges,
 ) -> SolidField:
-    """von Mises stress of a displacement (n, 3) Cartesian mm, with the peak that counts.
+    """Return the von Mises stress of a displacement (n, 3) Cartesian mm, with the peak that counts.
 
     Raises
     ------

@@ -51,7 +51,7 @@ class PlanMesh:
 
 
 def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> PlanMesh:
-    """The sector from angle 0 to `sector` [rad], between the least and the largest radius of its lines.
+    """Triangulate the sector from angle 0 to `sector` [rad], between the lines' least and largest radius.
 
     The bounds of the sector are among `curves`. Triangles whose sides are below `smallest_mm` may be poor.
 

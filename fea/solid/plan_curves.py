@@ -68,7 +68,7 @@ Curve = Line | Arc
 
 
 def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
-    """Bolt holes in a sector [rad]: half a hole at angle 0 and at its end, whole ones between."""
+    """Return the bolt holes in a sector [rad]: half a hole at angle 0 and at its end, whole ones between."""
     arcs: list[Curve] = []
     for x, y in bolts.centres:
         angle = float(np.arctan2(y, x)) % (2 * np.pi)
@@ -86,7 +86,7 @@ def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
 
 
 def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:
-    """Points (2,) where two lines cross, whether or not within their ranges."""
+    """Return the points (2,) where two lines cross, whether or not within their ranges."""
     if isinstance(a, Line) and isinstance(b, Line):
         p, d = np.array(a.start), np.subtract(a.end, a.start)
         q, e = np.array(b.start), np.subtract(b.end, b.start)
@@ -121,7 +121,7 @@ def _both_sides(
 
 
 def pieces(curves: Sequence[Curve]) -> list[tuple[int, np.ndarray]]:
-    """For each curve its number and parameters, rising from 0 to 1: its ends and where others cross it."""
+    """Return the parameters of each curve, rising from 0 to 1, at its ends and where others cross it."""
     cuts: list[list[float]] = [[0.0, 1.0] for _ in curves]
     for (i, a), (j, b) in combinations(enumerate(curves), 2):
         for point in crossings(a, b):

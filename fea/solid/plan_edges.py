@@ -26,7 +26,7 @@ MERGED_DISTANCE = 1e-9
 
 
 def mapped(points: np.ndarray, sector: float) -> np.ndarray:
-    """(x, y) to (ln r, φ)."""
+    """Return (ln r, φ) of points (x, y)."""
     r = np.hypot(points[:, 0], points[:, 1])
     phi = np.arctan2(points[:, 1], points[:, 0])
     phi = np.where(phi < sector / 2 - np.pi, phi + 2 * np.pi, phi)

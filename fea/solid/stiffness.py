@@ -59,7 +59,7 @@ mesh is cautious. With 0.7 and with 0.95 as many of 49 random shafts met the tol
 
 @dataclass(frozen=True)
 class MeshSequence:
-    """Which meshes of a part's sector there are, coarse to fine.
+    """The meshes of a part's sector, coarse to fine.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def solid_stiffness(
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
 ) -> RefinedStiffness:
-    """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
+    """Return K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Where a correction fails, this mesh and those after it solve all of the field. `shortfall` says why the
     tolerance was not reached: a finer mesh failed or would end after the deadline, the last has more elements
@@ -209,7 +209,7 @@ def _of(field: TorsionSolver, first: TetMesh) -> ScaledEstimate:
 
 
 def near_step(tolerance: float, half: float) -> float:
-    """Next over last edge length at the singular edges, for bounds ± `half` where `tolerance` is wanted.
+    """Return the next over the last singular edge length, for bounds ± `half` where `tolerance` is wanted.
 
     Rounded to three digits: threads add in varying order, and the rounding of `half` must not change the
     mesh.

@@ -77,7 +77,7 @@ class Walls:
 
     @classmethod
     def of(cls, mesh: TetMesh, part: Part) -> Walls:
-        """Of a mesh of a part's sector.
+        """Find the walls of a mesh of a part's sector.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class Walls:
         return Places.of(space, self.r.ravel(), self.z.ravel())
 
     def pull(self, stress: Parts) -> np.ndarray:
-        """Traction times area (3, k, q) along r, φ, z [N] of stresses [MPa] at the points."""
+        """Return traction times area (3, k, q) along r, φ, z [N] of stresses [MPa] at the points."""
         n_r, n_t, n_z = self.area
         part = {k: np.asarray(v).reshape(self.r.shape) for k, v in stress.items()}
         rr, tt, zz, rz, rt, tz = (
@@ -134,7 +134,7 @@ class Walls:
         )
 
     def forces(self, pull: np.ndarray) -> np.ndarray:
-        """Nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
+        """Return nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
         forces = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
         nodal = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
         np.add.at(forces, self.facets, nodal)
@@ -142,7 +142,7 @@ class Walls:
 
 
 def wall_facets(mesh: TetMesh, part: Part) -> np.ndarray:
-    """Facets (k, 6) that lie in a cut, on no surface of revolution and no named patch."""
+    """Return the facets (k, 6) in a cut: on no surface of revolution and no named patch."""
     surfaces = part_surfaces(part, mesh.sector_deg)
     unnamed = mesh.facets[mesh.facet_patch == mesh.patches.index("")]
     centres = mesh.nodes[unnamed].mean(axis=1)
@@ -186,7 +186,7 @@ class WholeTurned:
 
 @dataclass(frozen=True)
 class WholeUnderLobes:
-    """A part with bolt holes, and what the lobe load does to it without them; `coarser` as above.
+    """A part with bolt holes, and its field under the lobe load without them; `coarser` as above.
 
     `stiffness` : K₀ under that load.
     """
@@ -212,7 +212,7 @@ def at_cuts(part: Part) -> tuple[Box, ...]:
 
 @dataclass(frozen=True)
 class TurnedWalls:
-    """What takes u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], for a turn of 1 rad.
+    """Forces (n, 3) Cartesian [N] that cancel u₀'s tractions on the walls, for a turn of 1 rad.
 
     `energy` : E of the whole part [N·mm].
     """
@@ -222,7 +222,7 @@ class TurnedWalls:
 
 
 def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> TurnedWalls:
-    """Of the walls of a mesh of the part's sector.
+    """Return the forces on the walls of a mesh of the part's sector.
 
     The energy in a cut is the work that is done on its boundary: on the walls alone where the rest is free or
     held still, as of holes. The keyway's is turned there, so the walls' share is told relative to that turn.
@@ -242,7 +242,7 @@ def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> Turn
 
 @dataclass(frozen=True)
 class WallWave:
-    """What takes a wave of u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], complex.
+    """Complex forces (n, 3) Cartesian [N] that cancel a wave of u₀'s tractions on the walls.
 
     `energy` : the wave's part of E, of the whole part [N·mm].
     """
@@ -255,7 +255,7 @@ class WallWave:
 def lobed_walls(
     walls: Walls, repeats: int, solved: SolvedLobes, material: Elastic
 ) -> Iterator[WallWave]:
-    """The waves of the lobe load on the walls of half a repeat, or of half the part (`repeats` 1).
+    """Return the waves of the lobe load on the walls of half a repeat, or of half the part (`repeats` 1).
 
     Raises
     ------

@@ -57,7 +57,7 @@ def swept_mesh(
     finer: Finer | None = None,
     most_elements: float = inf,
 ) -> BisectableMesh | None:
-    """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
+    """Return the mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
     A shaft with holes that are not in a plain column, or a keyway that cannot be bent into place, is swept
     along the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose

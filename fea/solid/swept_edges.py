@@ -15,7 +15,7 @@ from flexspline.geometry.part import Part
 
 
 def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
-    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
+    """Return points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
 
     The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
     """

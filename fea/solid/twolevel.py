@@ -35,7 +35,7 @@ smoother would amplify that mode."""
 
 
 def corner_interpolation(mesh: TetMesh, frames: NodeFrames) -> csr_matrix:
-    """P (3n, 3c): every node's displacement from the corners', each in its own axes."""
+    """Return P (3n, 3c): every node's displacement from the corners', each in its own axes."""
     n, corners = len(mesh.nodes), int(mesh.cells[:, :4].max()) + 1
     middle, first = np.unique(mesh.cells[:, 4:].ravel(), return_index=True)
     ends = mesh.cells[:, EDGES].reshape(-1, 2)[first]
@@ -113,7 +113,7 @@ class TwoLevel:
 
 @contextmanager
 def two_level(matrix: csr_matrix, free: np.ndarray, corners: csr_matrix) -> Iterator[TwoLevel]:
-    """As `TwoLevel`, with the corners' factors, for as long as the context lasts.
+    """Give a `TwoLevel` with the corners' factors, for as long as the context lasts.
 
     Raises
     ------

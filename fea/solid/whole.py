@@ -44,7 +44,7 @@ class WholePart:
 def whole_part(
     mesh: TetMesh, displacement: np.ndarray, mises: np.ndarray, parity: Parity
 ) -> WholePart:
-    """All 360° of a part of which `mesh` is a sector.
+    """Return all 360° of a part of which `mesh` is a sector.
 
     Parameters
     ----------
@@ -73,12 +73,12 @@ def whole_part(
 
 
 def unloaded_part(mesh: TetMesh) -> WholePart:
-    """All 360° of a part that nothing moves."""
+    """Return all 360° of a part that nothing moves."""
     return whole_part(mesh, np.zeros_like(mesh.nodes), np.zeros(len(mesh.nodes)), "symmetric")
 
 
 def face_patches(mesh: TetMesh) -> np.ndarray:
-    """(m, 4) patch index of every cell's faces, -1 where the face is inside the material."""
+    """Return the patch (m, 4) of every cell's faces, -1 where the face is inside the material."""
     size = len(mesh.nodes)
     faces = np.sort(mesh.cells[:, FACES[:, :3]].reshape(-1, 3), axis=1).astype(np.int64)
     wanted = np.sort(mesh.facets[:, :3], axis=1).astype(np.int64)

@@ -66,7 +66,7 @@ ACT_TOGETHER = 0.2
 
 
 def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
-    """Largest force of a pair of teeth where both flanks press without torque [N]; 0 where one is free."""
+    """Return the largest force of a pair that presses on both flanks without torque [N], or 0."""
     front, back = np.split(unloaded.loaded[model.flanks], 2)
     if not (front.any() and back.any()):
         return 0.0
@@ -74,7 +74,7 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
 
 
 def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[GearWarning]:
-    """What makes it a gear that was not intended."""
+    """Return why this is a gear that was not intended."""
     listed: list[GearWarning] = []
     if preload_N := both_press_N(model, unloaded):
         listed.append(_pressing(preload_N, design, model, unloaded))
@@ -120,7 +120,7 @@ def _pressing(
 
 
 def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]:
-    """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
+    """Return the simplifications; `teeth` (t,) [N]: forces at rated torque."""
     listed: list[GearNote] = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
@@ -144,7 +144,7 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]
 
 
 def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
-    """A note for K2 below K1 and for K3 below K2 [N·m/rad]: a catalogue's gear grows stiffer."""
+    """Return a note for K2 below K1 and for K3 below K2 [N·m/rad]: a catalogue's gear grows stiffer."""
     names = [f"K{place}" for place in range(1, len(chords) + 1)]
     return [
         FallingStiffness(lower, higher, 1 - K / before, preload_N)
@@ -154,7 +154,7 @@ def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
 
 
 def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:
-    """A note where terms and lost motion are not of one torque."""
+    """Return a note where terms and lost motion are not of one torque."""
     if abs(load_Nm / lost_motion_Nm - 1) <= SAME_TORQUE:
         return []
     return [TwoTorques(load_Nm, lost_motion_Nm)]
@@ -163,7 +163,7 @@ def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:
 def of_play(
     terms_arcsec: Mapping[str, float], play: PlayEffect, full_stroke: bool
 ) -> tuple[list[GearWarning], list[GearNote]]:
-    """Warnings and notes where the bearing's play does not simply open the mesh.
+    """Return warnings and notes where the bearing's play does not simply open the mesh.
 
     `full_stroke`: the plug's stroke is m(z2 - z1)/2.
     """

@@ -17,7 +17,7 @@ SMALLEST_SPREAD = 1e-6
 
 
 def check(study: Study) -> None:
-    """Raises StudyError where something cannot be."""
+    """Raise StudyError where the study is impossible."""
     file, method = study.file, study.file.run.method
     for key, span in file.vary.items():
         _check_design_key(study, "vary", key)

@@ -33,7 +33,7 @@ class ClearanceSlope:
 
 
 def clearance_slopes(design: Design) -> tuple[ClearanceSlope, ClearanceSlope]:
-    """Of the flank clearance and the bearing play, from the sum's own terms: no stiffness is needed.
+    """Return the slopes of flank clearance and bearing play from the sum's own terms, without a stiffness.
 
     Examples
     --------

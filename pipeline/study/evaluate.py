@@ -43,7 +43,7 @@ STUDY_STRESS_TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker is asked: tables of the design file, values by dotted key, which solves."""
+    """A worker's task: tables of the design file, values by dotted key, and which solves."""
 
     tables: Mapping[str, Any]
     values: Mapping[str, float]
@@ -70,7 +70,7 @@ class Outcome:
 
 
 def outcome_of(stored: Mapping[str, Any]) -> Outcome:
-    """From its `asdict` as JSON, which has no tuples."""
+    """Return an outcome from its `asdict` as JSON, which has no tuples."""
     return Outcome(**{**stored, "faults": tuple(stored["faults"])})
 
 
@@ -95,7 +95,7 @@ def evaluate(task: Task) -> Outcome:
 def figures_of(
     design: Design, solves: tuple[Solve, ...], holes: HolesEffect | None = None
 ) -> Outcome:
-    """All figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
+    """Return all figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
 
     A solve that fails leaves the others' figures; its fault names it.
 
@@ -151,7 +151,7 @@ def figures_of(
 
 
 def fast_K_e(design: Design) -> Stiffness:
-    """Of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
+    """Return K_e of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
     return stiffness(design, "shaft", STUDY_TORSION_WIDTH)
 
 

@@ -42,7 +42,7 @@ class OpenEnd:
 
 
 def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
-    """What moves each figure looked at, over all designs built, the strongest first.
+    """Return the keys that move each figure, over all designs built, the strongest first.
 
     Nothing of a tolerance study, whose indices say it, and of few designs. An optimiser's designs move
     several dimensions together, and few designs agree by chance: what is no influence of the dimension itself
@@ -67,7 +67,7 @@ def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
 
 
 def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
-    """Ends of spans at which the best design lies, though it would gain beyond them.
+    """Return the ends of spans at which the best design lies, though it would gain beyond them.
 
     A key of one value has no span, and one that only one built design has tells nothing.
     """
@@ -91,7 +91,7 @@ def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
 
 
 def unbuilt_neighbours(result: StudyResult, best: Row) -> tuple[tuple[str, float], ...]:
-    """Keys and their values next to the best design's in a grid that gave no design, all else alike.
+    """Return keys and values next to the best design's in a grid that gave no design, all else alike.
 
     Without those towards which the objective is seen to get worse.
     """

@@ -49,7 +49,7 @@ def polish_of(
     sense: str,
     excesses: Callable[[FrozenTrial], Sequence[float]],
 ) -> Polish | None:
-    """The next design's step; None where the sampler is to suggest it.
+    """Return the next design's step; None where the sampler is to suggest it.
 
     While none keeps to all constraints, the best is the one that oversteps them least.
     """
@@ -72,7 +72,7 @@ def polish_of(
 
 
 def near(polish: Polish, random: np.random.Generator) -> dict[str, Any]:
-    """Values a step away from the best, kept within the spans by reflection."""
+    """Return values a step away from the best, kept within the spans by reflection."""
     from optuna.distributions import CategoricalDistribution, IntDistribution
 
     best, step = polish.best, polish.step

@@ -44,7 +44,7 @@ HOLES_NOTE = "holes"
 
 
 def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
-    """Where a study's designs come from, and what corrects their K_e for holes."""
+    """Return the source of a study's designs, and the correction of their K_e for holes."""
     if study.file.run.method == "tolerance":
         return scattered(study, holes)
     solves = solves_of(study, USUAL_SOLVES)
@@ -57,7 +57,7 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
 def nominal_holes(
     study: Study, store: TrialStore, say: Callable[[str], None]
 ) -> HolesEffect | UnknownEffect | None:
-    """What the shaft's holes and keyway do to K_e of the design that the study begins with.
+    """Return the effect of the shaft's holes and keyway on K_e of the design that the study begins with.
 
     Kept with the study's trials: every row has the same share, whoever makes it and when. What time or memory
     was too short for is looked for again, until a design is begun without it.
@@ -82,7 +82,7 @@ def _is_sought(stored: Mapping[str, Any] | None, store: TrialStore) -> bool:
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:
-    """The study's trials in its storage, `study.db` in `folder` where none is named.
+    """Open the study's trials in its storage, `study.db` in `folder` where none is named.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def whole_study(
     store: TrialStore,
     listener: StudyListener = NOBODY,
 ) -> StudyResult:
-    """`run_study` with the workers that the study asks for, its K_e corrected for holes.
+    """Run the study with the workers that it asks for, its K_e corrected for holes.
 
     Where it found a best design, the figures of the design that it began with stand beside it.
     """

@@ -29,7 +29,7 @@ STARTUP = 10
 
 
 def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
-    """How far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
+    """Return how far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
     return [
         limit.excess(figures[k]) / limit.size if k in figures else 1.0
         for k, limit in study.file.constraint.items()
@@ -37,7 +37,7 @@ def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
 
 
 def start_in_spans(study: Study) -> Values:
-    """The values that the study begins with; none where a varied key has none within its span."""
+    """Return the values that the study begins with; none where a varied key has none within its span."""
     values = study.start_values
     for key, span in study.file.vary.items():
         low, high = span.ends
@@ -48,7 +48,7 @@ def start_in_spans(study: Study) -> Values:
 
 
 def sampler_of(study: Study) -> BaseSampler:
-    """TPE for one objective, its best polished towards the end; NSGA-II for several."""
+    """Return TPE for one objective, with the best polished towards the end; NSGA-II for several."""
     from optuna.samplers import BaseSampler, NSGAIISampler, TPESampler
 
     file = study.file

@@ -48,7 +48,7 @@ class Tightened:
 
 @dataclass(frozen=True)
 class Attribution:
-    """What share of the variance is whose.
+    """Shares of the variance by input.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class Scatter:
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Inputs, the most important first; as they come where nobody knows."""
+        """Inputs, the most important first; in their own order where the indices are not known."""
         if self.indices is None:
             return tuple(range(len(self.inputs)))
         total = self.indices.total
@@ -116,7 +116,7 @@ class Scatter:
 def scatter_of(
     key: str, inputs: tuple[ScatteredInput, ...], rows: tuple[Row, ...], seed: int
 ) -> Scatter:
-    """From the rows of a whole tolerance study, in order.
+    """Return a figure's scatter from the rows of a whole tolerance study, in order.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def scatter_of(
 def attributed(
     inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray
 ) -> Attribution:
-    """Shares of the variance from points (n, k) and values (n,) of Saltelli's scheme, nan where unsolved."""
+    """Return shares of the variance from points (n, k) and values (n,), nan where unsolved (Saltelli)."""
     k = len(inputs)
     blocks, solved = values.reshape(-1, k + 2), np.isfinite(values)
     block = np.repeat(np.arange(len(blocks)), k + 2)
@@ -184,17 +184,17 @@ class Cloud:
         self._errors = np.random.default_rng(seed).permutation(dealt)
 
     def values(self, inputs: tuple[ScatteredInput, ...]) -> np.ndarray:
-        """The figure for inputs that scatter less than the surface's own, or as they do."""
+        """Return the figure for inputs that scatter less than the surface's own, or as much."""
         x = np.column_stack([i.at(u) for i, u in zip(inputs, self._unit.T, strict=True)])
         return np.asarray(self.surface.at(x) + self._errors)
 
     def ends(self, inputs: tuple[ScatteredInput, ...]) -> tuple[float, float]:
-        """Of the 95 % range."""
+        """Return the ends of the 95 % range."""
         return _ends(self.values(inputs))
 
 
 def tightening(cloud: Cloud) -> tuple[Tightened, ...]:
-    """What every input's tightening buys of the 95 % range."""
+    """Return how much narrower the 95 % range becomes if an input is tightened, for each input."""
     inputs = cloud.surface.inputs
     now = float(np.ptp(cloud.ends(inputs)))
     gains = []

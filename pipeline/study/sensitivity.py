@@ -12,7 +12,7 @@ from flexspline.pipeline.study.slope import Slope, Slopes
 
 
 def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ...]:
-    """Of every length above 0 of both parts, the strongest first within a part.
+    """Return dK/dp of every length above 0 of both parts, the strongest first within a part.
 
     `say` is told the cache's faults, each dimension that is solved, and those that have no slope.
 

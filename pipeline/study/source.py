@@ -128,12 +128,12 @@ class SampledDesigns(_Asked):
 
 
 def solves_of(study: Study, usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
-    """What every design of a study is solved for."""
+    """Return the solves of every design of a study."""
     return needed({**study.file.objective, **study.file.constraint}, usual)
 
 
 def distributions(study: Study) -> dict[str, BaseDistribution]:
-    """Optuna's words for [vary]."""
+    """Return Optuna's distributions of [vary]."""
     from optuna.distributions import (
         CategoricalDistribution,
         FloatDistribution,
@@ -153,7 +153,7 @@ def distributions(study: Study) -> dict[str, BaseDistribution]:
 
 
 def study_name(study: Study) -> str:
-    """The file's name and a digest of all that changes what a row means, or which rows there are."""
+    """Return the file's name and a digest of all that changes a row's meaning, or which rows there are."""
     file = study.file.model_dump(mode="json", exclude={"run", "design"})
     run = study.file.run
     identity: dict[str, Any] = {

@@ -42,7 +42,7 @@ TRIES = 4
 
 
 def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
-    """Of every length above 0 of both parts, the strongest first within a part; `say` is told each.
+    """Return dK/dp of every length above 0, the strongest first within a part; `say` is told each.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
 
 
 def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
-    """A difference over a step so small that one side does where the other cannot be built.
+    """Return a difference over so small a step that one side does where the other cannot be built.
 
     Raises
     ------

@@ -38,7 +38,7 @@ class Study:
 
     @property
     def start_values(self) -> dict[str, float]:
-        """What the design that it begins with has for the varied keys, where it states them."""
+        """Values of the varied keys in the first design, where it states them."""
         values = {key: value_at(self.design, key) for key in self.file.vary}
         return {key: value for key, value in values.items() if value is not None}
 

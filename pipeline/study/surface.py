@@ -47,14 +47,14 @@ class ResponseSurface:
     errors: np.ndarray
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """The surface's values at points (n, k)."""
+        """Return the surface's values at points (n, k)."""
         return np.asarray(
             _terms(self.inputs, self.polynomials, self.pairs, points) @ self.coefficients
         )
 
     @property
     def variance(self) -> float:
-        """Of the surface, without its misfit."""
+        """Variance of the surface, without its misfit."""
         return float((self.coefficients[1:] ** 2).sum())
 
     @property
@@ -63,7 +63,7 @@ class ResponseSurface:
         return 1 - self.misfit / (self.variance + self.misfit)
 
     def indices(self) -> Indices:
-        """Shares of the variance; the misfit's share may belong to any input, so every interval holds it."""
+        """Return shares of the variance; the misfit may belong to any input, so every interval holds it."""
         first, total = _members(len(self.inputs), self.pairs)
         return Indices(*self._shares(first), *self._shares(total))
 
@@ -81,7 +81,7 @@ class ResponseSurface:
 def surface_through(
     inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray, block: np.ndarray
 ) -> ResponseSurface | None:
-    """The surface with products of inputs or without, whichever errs less; None: too few designs.
+    """Return the surface with products of inputs or without, whichever errs less; None: too few designs.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class ScatteredInput:
     normal: bool
 
     def at(self, unit: np.ndarray) -> np.ndarray:
-        """Values for uniform numbers in [0, 1], any shape."""
+        """Return values for uniform numbers in [0, 1], any shape."""
         if self.low == self.high:
             return np.full(np.shape(unit), self.nominal)
         if not self.normal:
@@ -62,7 +62,7 @@ class ScatteredInput:
         return np.clip(drawn, self.low, self.high)
 
     def tightened(self, factor: float) -> ScatteredInput:
-        """The same input with `factor` times the scatter."""
+        """Return the same input with `factor` times the scatter."""
         return ScatteredInput(
             self.key,
             self.nominal,
@@ -74,7 +74,7 @@ class ScatteredInput:
 
 
 def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
-    """The design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
+    """Return the design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def _range(design: Design, key: str) -> tuple[float, float]:
 
 
 def base_size(study: Study, k: int) -> int:
-    """N: the largest power of two with N(k + 2) within `run.evaluations`.
+    """Return N: the largest power of two with N(k + 2) within `run.evaluations`.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def base_size(study: Study, k: int) -> int:
 
 
 def saltelli(inputs: tuple[ScatteredInput, ...], base: int, seed: int) -> np.ndarray:
-    """Points (base·(k + 2), k), block by block: A, A with each input from B, B."""
+    """Return points (base·(k + 2), k), block by block: A, A with each input from B, B."""
     from scipy.stats import qmc
 
     k = len(inputs)
@@ -185,7 +185,7 @@ class ScatteredDesigns(PlannedDesigns):
 
 
 def scattered(study: Study, holes: HolesEffect | None) -> ScatteredDesigns:
-    """The source of a tolerance study.
+    """Return the source of a tolerance study.
 
     Raises
     ------

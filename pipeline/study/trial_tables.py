@@ -70,7 +70,7 @@ class TrialTables:
     def changed(
         self, connection: Connection, after: int, among: Sequence[int]
     ) -> list[StoredTrial]:
-        """Trials made after the one with id `after`, and those with ids `among`, by id.
+        """Return trials made after the one with id `after`, and those with ids `among`, by id.
 
         Ids rise with time because trials are made under the study's lock.
         """
@@ -117,7 +117,8 @@ class TrialTables:
         trials: Sequence[tuple[Mapping[str, Any], Values]],
         over: Mapping[str, BaseDistribution],
     ) -> list[int]:
-        """RUNNING trials, numbered from `first`, of (attributes, values); their ids. Under the lock."""
+        """Create RUNNING trials, numbered from `first`, of (attributes, values), under the lock; return their
+        ids."""
         from optuna.distributions import distribution_to_json
         from optuna.storages._rdb import models
         from optuna.trial import TrialState

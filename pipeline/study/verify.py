@@ -45,7 +45,7 @@ DIED = SolidAnswer(Outcome(faults=(WORKER_DIED,)), passing=True)
 
 
 def solid_answer(task: Task, rim: bool) -> SolidAnswer:
-    """One design by the solid model; `rim`: the lobes and the ellipse too."""
+    """Solve one design by the solid model; `rim`: the lobes and the ellipse too."""
     try:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
@@ -85,7 +85,7 @@ def verify(
     task: Callable[[Mapping[str, float]], Task],
     say: Callable[[str], None],
 ) -> tuple[Verified, ...]:
-    """The first `run.verify` of the best designs; what is stored is not solved again.
+    """Solve the first `run.verify` of the best designs; what is stored is not solved again.
 
     An answer that time or memory was too short for is of this run only: the next one solves it again.
     """
@@ -112,7 +112,7 @@ def verify(
 
 
 def checked(row: Row, solid: Outcome, solver: Solver) -> Verified:
-    """Figures that both models have, side by side; `solver` says which K_b is in the backlash."""
+    """Return figures of both models, side by side; `solver` says which K_b is in the backlash."""
     fast = row.outcome.figures
     K_b = f"{solver.K_b_in_sum}_Nm_per_rad"
     keys = [k for k in solid.figures if k in fast and not k.endswith(("]", "shaft", "flexspline"))]

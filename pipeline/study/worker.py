@@ -32,7 +32,7 @@ def serve() -> None:
 
 
 def answer(call: bytes) -> bytes:
-    """A pickled (function, arguments) carried out: (True, its result) or (False, its error), pickled."""
+    """Carry out a pickled (function, arguments); return (True, its result) or (False, its error), pickled."""
     try:
         function, arguments = pickle.loads(call)
         return pickle.dumps((True, function(*arguments)))
@@ -54,7 +54,7 @@ def write_frame(stream: BinaryIO, data: bytes) -> None:
 
 
 def read_frame(stream: BinaryIO) -> bytes | None:
-    """The next frame; None where the stream ends."""
+    """Return the next frame; None where the stream ends."""
     head = stream.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         return None
