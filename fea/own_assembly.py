@@ -157,10 +157,10 @@ def triangles_of(mesh: Any, points: np.ndarray) -> np.ndarray:
             _, near = tree.query(points[:, mine].T, min(count, mesh.nelements))
             near = near.reshape(len(mine), -1)
             first, second = (corner[:, i, near] - corner[:, 0, near] for i in (1, 2))
-            off = points[:, mine, None] - corner[:, 0, near]
+            offset = points[:, mine, None] - corner[:, 0, near]
             area = first[0] * second[1] - first[1] * second[0]
-            x = (off[0] * second[1] - off[1] * second[0]) / area
-            y = (first[0] * off[1] - first[1] * off[0]) / area
+            x = (offset[0] * second[1] - offset[1] * second[0]) / area
+            y = (first[0] * offset[1] - first[1] * offset[0]) / area
             inside = np.minimum(np.minimum(x, y), 1 - x - y)
             best = inside.argmax(axis=1)[:, None]
             within = np.take_along_axis(inside, best, 1)[:, 0] > -TOUCH

@@ -7,7 +7,7 @@ one before, K_1 − K_2 = d leaves d·q/(1 − q).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -53,7 +53,7 @@ class MeshResult:
         return self.level.K_Nm_per_rad
 
 
-@dataclass
+@dataclass(frozen=True)
 class ScaledEstimate:
     """K and its estimated errors on a sequence of meshes, coarse to fine.
 
@@ -65,17 +65,13 @@ class ScaledEstimate:
 
     usual: float
     believed: tuple[float, float]
-    meshes: list[MeshResult] = field(default_factory=list)
+    meshes: tuple[MeshResult, ...] = ()
     falls: tuple[float, float] | None = None
     """The range of q where each mesh follows the errors of the one before and has twice its elements."""
 
-    def add(self, result: MeshResult) -> None:
-        """Add the result of one more mesh."""
-        self.meshes.append(result)
-
     def with_mesh(self, result: MeshResult) -> ScaledEstimate:
         """Return a copy with the result of one more mesh."""
-        return replace(self, meshes=[*self.meshes, result])
+        return replace(self, meshes=(*self.meshes, result))
 
     @property
     def levels(self) -> tuple[MeshLevel, ...]:

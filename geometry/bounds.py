@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from flexspline.geometry.listed import joined
@@ -111,3 +111,14 @@ def _rounded(value: float, digits: int, up: bool) -> str:
     last = Decimal(1).scaleb(exact.adjusted() - digits + 1)
     cut = exact.quantize(last, ROUND_CEILING if up else ROUND_FLOOR)
     return f"{float(cut):.{digits}g}"
+
+
+def last_that(holds: Callable[[float], bool], inside: float, outside: float, width: float) -> float:
+    """The value farthest from `inside` towards `outside` for which a condition holds, to within `width`.
+
+    It holds at `inside`, not at `outside`, and changes once between them.
+    """
+    while abs(outside - inside) > width:
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if holds(middle) else (inside, middle)
+    return inside

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf, pi, radians
 
-from flexspline.geometry.bounds import beside, span
+from flexspline.geometry.bounds import beside, last_that, span
 from flexspline.geometry.check_flexspline import thickest_ring
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
-from flexspline.geometry.halving import last_that
 from flexspline.geometry.module_fit import fitting_module_mm
 from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import partial
 from math import cos, radians
 
-from flexspline.geometry.bounds import below, span
+from flexspline.geometry.bounds import below, last_that, span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
 from flexspline.geometry.check_tooth import least_module_mm, ring_ends, tooth_faults
@@ -19,7 +19,6 @@ from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
-from flexspline.geometry.halving import last_that
 from flexspline.geometry.module_fit import (
     MM_PER_M,
     fitting_diameters_mm,

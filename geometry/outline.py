@@ -91,9 +91,9 @@ class Segment:
         a0 = atan2(*(start - c)[::-1])
         middle = a0 + self.sweep / 2
         v = rz - c
-        off = (np.arctan2(v[:, 1], v[:, 0]) - middle + pi) % (2 * pi) - pi
+        turn = (np.arctan2(v[:, 1], v[:, 0]) - middle + pi) % (2 * pi) - pi
         half = abs(self.sweep) / 2
-        angle = middle + np.clip(off, -half, half)
+        angle = middle + np.clip(turn, -half, half)
         return c + self.radius * np.stack([np.cos(angle), np.sin(angle)], -1)
 
     @property

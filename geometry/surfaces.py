@@ -57,8 +57,8 @@ class HoleWall:
     patch: str = ""
 
     def project(self, points: np.ndarray) -> np.ndarray:
-        off = points[:, :2] - np.array(self.axis)
-        unit = off / np.maximum(np.linalg.norm(off, axis=1), ABOVE_ZERO)[:, None]
+        from_axis = points[:, :2] - np.array(self.axis)
+        unit = from_axis / np.maximum(np.linalg.norm(from_axis, axis=1), ABOVE_ZERO)[:, None]
         return np.column_stack([np.array(self.axis) + self.radius * unit, points[:, 2]])
 
 

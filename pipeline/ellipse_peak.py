@@ -90,13 +90,8 @@ def _by_two_bodies(flexspline: PartModel) -> StressPeak | None:
 
 
 def _load(flexspline: PartModel) -> BodyLoad:
-    w0, exclusion_mm, material = (
-        flexspline.context.design.w0_mm,
-        flexspline.part.exclusion_mm,
-        flexspline.material,
-    )
-
-    tolerance = peak_tolerance(flexspline.tolerance)
+    w0, exclusion_mm = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
+    material, tolerance = flexspline.material, peak_tolerance(flexspline.tolerance)
 
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
         return ellipse_stress(outline, material, w0, exclusion_mm, tolerance, deadline)

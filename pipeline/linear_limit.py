@@ -11,12 +11,7 @@ from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.tube import polar_moment_mm4
-from flexspline.pipeline.stress_limits import (
-    HIGHEST_STRENGTH_MPA,
-    ON_ELLIPSE,
-    PART_OF,
-    is_compared,
-)
+from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, ON_ELLIPSE, PART_OF, is_compared
 
 
 @dataclass(frozen=True)

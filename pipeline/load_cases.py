@@ -29,10 +29,7 @@ from flexspline.pipeline.enclosure import TwoBodies, answered_within, check_agai
 from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.lobes_by_torsion import entry_doubt, lobes_by_torsion
 from flexspline.pipeline.lobes_with_holes import lobes_with_holes
-from flexspline.pipeline.part_stiffness import (
-    part_stiffness,
-    revolved_stiffness,
-)
+from flexspline.pipeline.part_stiffness import part_stiffness, revolved_stiffness
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of

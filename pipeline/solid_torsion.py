@@ -251,8 +251,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         made.append(meshes.meshed(spec))
         if made[-1].kind != made[0].kind:
             raise OtherKindError(made[-1].kind)
-        if said := long_solve(model, made[-1].mesh.elements):
-            model.context.progress.note(f"  {model.name}: {said}")
+        if line := long_solve(model, made[-1].mesh.elements):
+            model.context.progress.note(f"  {model.name}: {line}")
         return made[-1].mesh
 
     def halved(mesh: TetMesh) -> TypeGuard[BisectableMesh]:

@@ -19,9 +19,9 @@ FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
 """In the order of the reports."""
 
 
-def in_order(every: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
+def in_order(figures: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
     """Return those of `FIGURES` that were solved, in their order."""
-    return {name: figure for name in FIGURES if (figure := every.get(name)) is not None}
+    return {name: figure for name in FIGURES if (figure := figures.get(name)) is not None}
 
 
 @dataclass(frozen=True)

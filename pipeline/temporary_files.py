@@ -94,13 +94,13 @@ def temporary_folder() -> Path:
 
 def clear(folder: Path) -> list[Path]:
     """Remove what ended processes left, and return it."""
-    gone = []
+    removed = []
     with suppress(OSError):  # a folder that cannot be listed will say so when it is written to
         for entry in folder.glob(f"{MARK}*"):
             if _abandoned(entry):
                 _remove(entry)
-                gone.append(entry)
-    return gone
+                removed.append(entry)
+    return removed
 
 
 def discard(folder: Path, say: Callable[[str], None]) -> None:

@@ -106,8 +106,8 @@ class PatternSolver:
 
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
     """Return ‖Ax − b‖/‖b‖; for b = 0 that of x = 0."""
-    off, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
-    return float(off) / max(float(of_load), ABOVE_ZERO)
+    residual, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
+    return float(residual) / max(float(of_load), ABOVE_ZERO)
 
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:

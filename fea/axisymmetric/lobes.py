@@ -173,7 +173,8 @@ class _RevolvedLobes:
         model = HarmonicModel(mesh, self._material)
         self.solution = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
         self.space, self.mesh = model.space, mesh
-        self.estimate.add(MeshResult(_level(model, self.solution), self.solution.estimate))
+        result = MeshResult(_level(model, self.solution), self.solution.estimate)
+        self.estimate = self.estimate.with_mesh(result)
 
     @property
     def missing(self) -> float:

@@ -119,6 +119,8 @@ def edge_middles(
     for index, s in enumerate(outline.segments):
         mine = edge_segment == index
         if s.centre is not None and mine.any():
-            off = middle[mine] - np.array(s.centre)
-            middle[mine] = s.centre + off * (s.radius / np.linalg.norm(off, axis=1))[:, None]
+            from_centre = middle[mine] - np.array(s.centre)
+            middle[mine] = (
+                s.centre + from_centre * (s.radius / np.linalg.norm(from_centre, axis=1))[:, None]
+            )
     return middle

@@ -78,20 +78,20 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
     """Return amplitudes (m, q) [MPa] of the harmonic's stresses from U, V, W (3·count,) [mm]."""
     r = np.asarray(basis.global_coordinates())[0]
     amplitude = displacement.reshape(-1, 3).T
-    seen = {component: basis.interpolate(amplitude[component]) for component in wave.components}
-    return stress_of(wave, material, r, seen)
+    fields = {component: basis.interpolate(amplitude[component]) for component in wave.components}
+    return stress_of(wave, material, r, fields)
 
 
-def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[int, Any]) -> Parts:
+def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, fields: Mapping[int, Any]) -> Parts:
     """Return stress amplitudes [MPa] at radii r [mm] from scikit-fem's fields U, V, W [mm] there."""
     lam, mu, n = material.lam, material.mu, wave.n
     if wave.torsion:
-        v = seen[TANGENTIAL]
+        v = fields[TANGENTIAL]
         v_r, v_z = v.grad
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
-    u, w = seen[RADIAL], seen[AXIAL]
+    u, w = fields[RADIAL], fields[AXIAL]
     (u_r, u_z), (w_r, w_z) = u.grad, w.grad
-    around = (u + n * seen[TANGENTIAL]) / r if n else u / r
+    around = (u + n * fields[TANGENTIAL]) / r if n else u / r
     mean = lam * (u_r + around + w_z)
     parts = {
         RR: mean + 2 * mu * u_r,
@@ -100,7 +100,7 @@ def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[in
         RZ: mu * (u_z + w_r),
     }
     if n:
-        v = seen[TANGENTIAL]
+        v = fields[TANGENTIAL]
         v_r, v_z = v.grad
         parts |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
     return parts

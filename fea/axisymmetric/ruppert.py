@@ -46,8 +46,8 @@ def circumcentres(corner: np.ndarray) -> np.ndarray:
     u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
     twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
-    return np.asarray(corner[:, 0] + off / twice[:, None])
+    offset = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
+    return np.asarray(corner[:, 0] + offset / twice[:, None])
 
 
 def is_poor(sides: np.ndarray, radii: np.ndarray, smallest_angle: float) -> np.ndarray:

@@ -88,8 +88,8 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
         def allowed(more: np.ndarray, before: np.ndarray = before) -> float:
             return FACTORED_ENERGY * abs(dot(before + more, right))
 
-        off = right - matrix @ before
-        correction = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
+        residual = right - matrix @ before
+        correction = conjugate_gradients(matrix.__matmul__, back, residual, FACTORED_STEPS, allowed)
         if correction.early:
             raise SolveError(f"{FACTORED_STEPS} steps were not enough")
         x = before + correction.x

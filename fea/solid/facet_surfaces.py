@@ -24,9 +24,9 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
     MeshQualityError : a face lies on none.
     """
     centres = corners[faces].mean(axis=1)
-    off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
+    distance = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
     away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
-    lies = off[:, faces].max(axis=2) < ON_SURFACE_MM
+    lies = distance[:, faces].max(axis=2) < ON_SURFACE_MM
     if not lies.any(axis=0).all():
         raise MeshQualityError(
             f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"

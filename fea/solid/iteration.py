@@ -108,5 +108,5 @@ def _spectrum(lengths: list[float], turns: list[float]) -> tuple[float, float]:
     a, b = np.array(lengths), np.array(turns)
     diagonal = 1 / a
     diagonal[1:] += b[:-1] / a[:-1]
-    seen = eigh_tridiagonal(diagonal, np.sqrt(np.abs(b[:-1])) / a[:-1], eigvals_only=True)
-    return float(seen[0]), float(seen[-1])
+    eigenvalues = eigh_tridiagonal(diagonal, np.sqrt(np.abs(b[:-1])) / a[:-1], eigvals_only=True)
+    return float(eigenvalues[0]), float(eigenvalues[-1])

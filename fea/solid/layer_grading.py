@@ -72,12 +72,12 @@ def _relative_lengths(
     dr, dz = (ends[:, 1, k] - ends[:, 0, k] for k in (0, 2))
     off_axis = (ends[:, :, 0] > 0).all(axis=1)
     turn = np.where(off_axis, ends[:, 1, 1] - ends[:, 0, 1], 0.0)
-    there = cartesian(middle)
+    places = cartesian(middle)
     across = np.minimum(
         grading.far,
-        grading.near + grading.growth * distance_from(seams.nodes[seams.singular], points, there),
+        grading.near + grading.growth * distance_from(seams.nodes[seams.singular], points, places),
     )
     others = seams.nodes[seams.singular & ~seams.revolved]
-    plain = grading.near + grading.growth * distance_from(others, points, there)
+    plain = grading.near + grading.growth * distance_from(others, points, places)
     around = np.maximum(across, np.minimum(plain, WHOLE_STEP * RING_STEP * middle[:, 0]))
     return np.sqrt((dr**2 + dz**2) / across**2 + (middle[:, 0] * turn / around) ** 2)

@@ -134,15 +134,15 @@ class Layers:
                 outer = f.far
         x = corner[:, :, 0] * np.cos(corner[:, :, 1])
         y = corner[:, :, 0] * np.sin(corner[:, :, 1])
-        there = (r > bore) & (r < outer)
+        inside = (r > bore) & (r < outer)
         bolts, slot = self.part.bolts, self.part.keyway
         if bolts is not None and z < self.part.hole_depth:
             for a, b in bolts.centres:
                 away = np.hypot(x - a, y - b).mean(axis=1)
-                there &= away > bolts.hole_radius + SAME_mm
+                inside &= away > bolts.hole_radius + SAME_mm
         if slot is not None and z > slot.start:
-            there &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
-        return there
+            inside &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
+        return inside
 
     def prisms(self, smallest_mm: float, far: float) -> tuple[np.ndarray, np.ndarray]:
         """Return nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.

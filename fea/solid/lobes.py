@@ -114,6 +114,7 @@ def lobe_stiffness(
     rest = (mesh for mesh, _ in meshes)
     lobes = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
     shortfall = refine(lobes, mesh, Deadline(limit_s))
+    estimate = lobes.estimate
     method = field.method(
         "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
         f" {estimate.scale:.2f}"
@@ -136,7 +137,7 @@ class _SolidLobes:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
             model = Model.of(half_repeat(mesh), self.field.material)
             result = self.field.solve(model)
-        self.estimate.add(result)
+        self.estimate = self.estimate.with_mesh(result)
         self.progress(
             f"{result.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
         )

@@ -69,9 +69,9 @@ def check_before_assembly(unknowns: int) -> None:
     matrix = 12 * entries  # bytes: a double and a 32-bit column each
     least = min(direct_bytes(unknowns, entries), iterative_bytes(unknowns, entries))
     need = max(ASSEMBLY_ENTRY_BYTES * entries, matrix + least)
-    there = available_bytes()
-    if need > there:
-        raise MemoryShortError(unknowns, need, there)
+    available = available_bytes()
+    if need > available:
+        raise MemoryShortError(unknowns, need, available)
 
 
 def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False) -> SolverKind:
@@ -83,19 +83,19 @@ def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False
     ------
     MemoryShortError : no way fits.
     """
-    there = available_bytes()
+    available = available_bytes()
     factors = direct_bytes(unknowns, entries)
     steps = iterative_bytes(unknowns, entries) if corners else inf
     below = DIRECT_BELOW
     if pardiso() and (slow or entries < THIN_ENTRIES * unknowns):
         below = THIN_BELOW
-    if factors <= there and (unknowns <= below or not corners):
+    if factors <= available and (unknowns <= below or not corners):
         return "direct"
-    if steps <= there:
+    if steps <= available:
         return "iterative"
-    if factors <= there:
+    if factors <= available:
         return "direct"
-    raise MemoryShortError(unknowns, min(factors, steps), there)
+    raise MemoryShortError(unknowns, min(factors, steps), available)
 
 
 def steps_of_factors(unknowns: int, entries: int) -> float:

@@ -176,8 +176,8 @@ class _SolidTorsion:
             return None
         made = self._sequence.by_error(mesh, self._errors)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            self.estimate.believed = self._field.scales.by_error
-            self.estimate.falls = ERROR_RATIOS
+            believed = self._field.scales.by_error
+            self.estimate = replace(self.estimate, believed=believed, falls=ERROR_RATIOS)
             return made
         left_s = self._deadline.limit_s - self._deadline.elapsed()
         wanted = near_step(self._tolerance, self.half)

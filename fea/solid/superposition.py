@@ -266,14 +266,14 @@ def lobed_walls(
     for number, amplitude in enumerate(solved.amplitudes):
         n = 2 * number
         harmonic = lobe_harmonic(n)
-        seen = {c: places.see(amplitude[:, c]) for c in harmonic.components}
-        stress = stress_of(harmonic, material, walls.r.ravel(), seen)
+        fields = {c: places.see(amplitude[:, c]) for c in harmonic.components}
+        stress = stress_of(harmonic, material, walls.r.ravel(), fields)
         (wave,) = waves((n,), repeats)
         cosine, sine = (wave.of(partial(_around, f, n), walls.phi) for f in (np.cos, np.sin))
         even = {k: stress[k] for k in (R_THETA, THETA_Z)}
         odd = {k: part for k, part in stress.items() if k not in even}
         pull = cosine * walls.pull(even) - sine * walls.pull(odd)
-        moved = _moved(seen, cosine, sine)
+        moved = _moved(fields, cosine, sine)
         sums = of_wave.setdefault(wave, [np.zeros_like(pull, complex) for _ in range(2)])
         sums[0] += pull
         sums[1] += moved
@@ -287,10 +287,10 @@ def _around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarra
     return function(n * phi)
 
 
-def _moved(seen: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
+def _moved(fields: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
     """Displacements (3, k, q) along r, φ, z of amplitudes U, V, W: −U sin nφ, V cos nφ, −W sin nφ."""
     displacement = np.zeros((3, *cosine.shape), complex)
     for component, factor in ((RADIAL, -sine), (TANGENTIAL, cosine), (AXIAL, -sine)):
-        if component in seen:
-            displacement[component] = factor * np.asarray(seen[component]).reshape(cosine.shape)
+        if component in fields:
+            displacement[component] = factor * np.asarray(fields[component]).reshape(cosine.shape)
     return displacement

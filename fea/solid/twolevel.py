@@ -133,8 +133,8 @@ class _Smoother:
     def __init__(self, matrix: BlockProduct, inverse: BlockProduct, free: np.ndarray) -> None:
         self._matrix, self._inverse = matrix, inverse
         start = np.random.default_rng(0).standard_normal(len(free)).astype(np.float32) * free
-        seen = conjugate_gradients(matrix.__matmul__, inverse.__matmul__, start, SPECTRUM_STEPS)
-        high = SPECTRUM_SAFETY * seen.spectrum[1]
+        iterated = conjugate_gradients(matrix.__matmul__, inverse.__matmul__, start, SPECTRUM_STEPS)
+        high = SPECTRUM_SAFETY * iterated.spectrum[1]
         low = high / SMOOTHED_RATIO
         self._middle, self._half = (high + low) / 2, (high - low) / 2
 

@@ -36,8 +36,8 @@ def check(study: Study) -> None:
     for table in ("objective", "constraint"):
         for key in getattr(file, table):
             if key not in FIGURES:
-                said = getattr(file, table)[key] if table == "objective" else {}
-                raise StudyError(f'{table}."{key}"', said, not_a_figure(key))
+                value = getattr(file, table)[key] if table == "objective" else {}
+                raise StudyError(f'{table}."{key}"', value, not_a_figure(key))
             if key == STD_KEY and not _always_stated(study):
                 reason = "needs a standard deviation above 0 in the design's [uncertainty]"
                 raise StudyError(f'{table}."{key}"', {}, reason)

@@ -111,8 +111,8 @@ class _WorkerProcess:
             calls, answers = self._pipes()
             with suppress(OSError):  # nobody reads any more
                 write_frame(calls, call)
-                if (said := read_frame(answers)) is not None:
-                    return said
+                if (reply := read_frame(answers)) is not None:
+                    return reply
             self.end()
         raise WorkerDiedError(WORKER_DIED)
 

@@ -134,11 +134,7 @@ def solves_of(study: Study, usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
 
 def distributions(study: Study) -> dict[str, BaseDistribution]:
     """Return Optuna's distributions of [vary]."""
-    from optuna.distributions import (
-        CategoricalDistribution,
-        FloatDistribution,
-        IntDistribution,
-    )
+    from optuna.distributions import CategoricalDistribution, FloatDistribution, IntDistribution
 
     of_keys: dict[str, BaseDistribution] = {}
     for key, span in study.file.vary.items():

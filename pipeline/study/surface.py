@@ -88,8 +88,10 @@ def surface_through(
     points : (n, k), values (n,) of designs that could be solved, block (n,) which of 0, 1, … each is of.
     """
     polynomials = tuple(map(_orthonormal, inputs))
-    every = tuple(combinations(range(len(inputs)), 2))
-    tried = [_fitted(inputs, polynomials, pairs, points, values, block) for pairs in (every, ())]
+    all_pairs = tuple(combinations(range(len(inputs)), 2))
+    tried = [
+        _fitted(inputs, polynomials, pairs, points, values, block) for pairs in (all_pairs, ())
+    ]
     return min((s for s in tried if s), key=lambda s: s.misfit, default=None)
 
 

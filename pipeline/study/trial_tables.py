@@ -142,10 +142,10 @@ class TrialTables:
         )
         ids = sorted(connection.scalars(made))
         self._attributes(connection, {at: a for at, (a, _) in zip(ids, trials, strict=True)})
-        said = {key: distribution_to_json(span) for key, span in over.items()}
+        distributions = {key: distribution_to_json(span) for key, span in over.items()}
         params = [
             {
-                "trial_id": at, "param_name": key, "distribution_json": said[key],
+                "trial_id": at, "param_name": key, "distribution_json": distributions[key],
                 "param_value": over[key].to_internal_repr(value),
             }
             for at, (_, values) in zip(ids, trials, strict=True)

@@ -40,11 +40,11 @@ def answer(call: bytes) -> bytes:
         trace = traceback.format_exc()
         try:
             fault.add_note(trace)
-            said = pickle.dumps((False, fault))
-            pickle.loads(said)  # an error that asks for more than a message cannot be made again
+            reply = pickle.dumps((False, fault))
+            pickle.loads(reply)  # an error that asks for more than a message cannot be made again
         except Exception:
-            said = pickle.dumps((False, RuntimeError(trace)))
-        return said
+            reply = pickle.dumps((False, RuntimeError(trace)))
+        return reply
 
 
 def write_frame(stream: BinaryIO, data: bytes) -> None:
