@@ -20,18 +20,16 @@ class ToleranceError(ComputationError):
         super().__init__(f"{what}: {shortfall}")
 
 
-def settled(stiffness: Stiffness) -> Stiffness:
+def settled(K: Stiffness) -> Stiffness:
     """Return the stiffness, if it is within the tolerance that was asked for.
 
     Raises
     ------
     ToleranceError : it is not.
     """
-    if stiffness.shortfall:
-        raise ToleranceError(
-            f"K is known to ± {stiffness.half_width:.2g} only", stiffness.shortfall
-        )
-    return stiffness
+    if K.shortfall:
+        raise ToleranceError(f"K is known to ± {K.half_width:.2g} only", K.shortfall)
+    return K
 
 
 def settled_peak(peak: StressPeak) -> StressPeak:

@@ -84,13 +84,11 @@ def _moved_steps(part: Part, shape: Shaft) -> tuple[ShaftSegment, ...]:
     pieces: list[ShaftSegment] = []
     outer = [0.0, *(s.outer_diameter_mm for s in shape.segment), 0.0]
     for before, segment, after in zip(outer, shape.segment, outer[2:], strict=False):
-        outer_diameter = segment.outer_diameter_mm
-        low, high = (
-            shape.fillet_mm if o > outer_diameter + SAME_mm else 0.0 for o in (before, after)
-        )
+        size = segment.outer_diameter_mm
+        low, high = (shape.fillet_mm if o > size + SAME_mm else 0.0 for o in (before, after))
         for length, diameter in (
             (low, before),
-            (segment.length_mm - low - high, outer_diameter),
+            (segment.length_mm - low - high, size),
             (high, after),
         ):
             if length > SAME_mm:

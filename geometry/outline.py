@@ -5,7 +5,7 @@ Plain numbers: the CAD solid revolves or extrudes them, the axisymmetric solver 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import acos, atan2, hypot, pi
 
@@ -217,3 +217,12 @@ def _chords(s: Segment, chord_error: float) -> int:
 def distance(a: Point, b: Point) -> float:
     """Between two points."""
     return hypot(a[0] - b[0], a[1] - b[1])
+
+
+def distinct(values: Iterable[float]) -> list[float]:
+    """Return lengths [mm], rising, without those within SAME_mm of the one before."""
+    kept: list[float] = []
+    for value in sorted(values):
+        if not kept or value > kept[-1] + SAME_mm:
+            kept.append(value)
+    return kept

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
-from flexspline.fea.axisymmetric.peak_refinement import StressProblem
+from flexspline.fea.axisymmetric.peak_refinement import HarmonicLoad, StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
-from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
+from flexspline.fea.axisymmetric.stress import ellipse, torque
 from flexspline.fea.types import Elastic, StressPeak
 from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.part import Part
@@ -72,19 +72,23 @@ def _body(part: Part) -> Part:
     return of_1_GPa(part.without_holes())
 
 
+def _problem(part: Part, load: HarmonicLoad, tolerance: float) -> StressProblem:
+    return StressProblem(
+        part.meridian, Elastic.of(part.material), load, part.exclusion_mm, tolerance
+    )
+
+
 @lru_cache(maxsize=KEPT_PARTS)
 def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
     """For w0 = 1 mm."""
-    return ellipse_stress(
-        part.meridian, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance
-    ).peak
+    return _problem(part, ellipse(w0_mm=1.0), tolerance).field().peak
 
 
 @lru_cache(maxsize=KEPT_PARTS)
 def _half_seat_peak(part: Part, tolerance: float) -> StressPeak:
     """For w0 = 1 mm."""
-    narrow = with_narrow_seat(part.meridian, NARROW_SEAT)
-    return ellipse_stress(narrow, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance).peak
+    problem = _problem(part, ellipse(w0_mm=1.0), tolerance)
+    return replace(problem, outline=with_narrow_seat(part.meridian, NARROW_SEAT)).field().peak
 
 
 @lru_cache(maxsize=KEPT_PARTS)
@@ -96,20 +100,13 @@ def _torque_peak(part: Part, tolerance: float) -> StressPeak:
 @lru_cache(maxsize=KEPT_FIELDS)
 def _torque_field(part: Part, tolerance: float) -> RevolvedField:
     """For 1 N·m."""
-    return torsion_stress(
-        part.meridian, Elastic.of(part.material), part.driven, 1.0, part.exclusion_mm, tolerance
-    )
+    return _problem(part, torque(part.driven, torque_Nm=1.0), tolerance).field()
 
 
 @lru_cache(maxsize=1)
 def _begun(part: Part, tolerance: float) -> Refining[RevolvedField]:
     """For w0 = 1 mm; only the newest, for it holds its model."""
-    unit = ellipse(w0_mm=1.0)
-    return Refining(
-        StressProblem(
-            part.meridian, Elastic.of(part.material), unit, part.exclusion_mm, tolerance
-        ).fields()
-    )
+    return Refining(_problem(part, ellipse(w0_mm=1.0), tolerance).fields())
 
 
 @lru_cache(maxsize=KEPT_FIELDS)

@@ -119,8 +119,6 @@ def edge_middles(
     for index, s in enumerate(outline.segments):
         mine = edge_segment == index
         if s.centre is not None and mine.any():
-            from_centre = middle[mine] - np.array(s.centre)
-            middle[mine] = (
-                s.centre + from_centre * (s.radius / np.linalg.norm(from_centre, axis=1))[:, None]
-            )
+            radial = middle[mine] - np.array(s.centre)
+            middle[mine] = s.centre + radial * (s.radius / np.linalg.norm(radial, axis=1))[:, None]
     return middle

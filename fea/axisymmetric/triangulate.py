@@ -139,10 +139,8 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     side = triangles[:, [1, 2, 0]] * n + triangles[:, [2, 0, 1]]  # opposite each corner
     forward = np.isin(side, edges[:, 0] * n + edges[:, 1])
     backward = np.isin(side, edges[:, 1] * n + edges[:, 0])
-    triangle, corner = np.nonzero((across >= 0) & ~forward & ~backward)
-    links = coo_matrix(
-        (np.ones(len(triangle)), (triangle, across[triangle, corner])), shape=2 * (len(side),)
-    )
+    tri, corner = np.nonzero((across >= 0) & ~forward & ~backward)
+    links = coo_matrix((np.ones(len(tri)), (tri, across[tri, corner])), shape=2 * (len(side),))
     _, region = connected_components(links, directed=False)
     inside = forward.any(axis=1) & ~is_flat(points, triangles)
     return triangles[np.isin(region, region[inside])]

@@ -13,7 +13,7 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
-from flexspline.geometry.outline import Meridian, SAME_mm, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment, distinct
 from flexspline.geometry.part import Part
 
 INTERFACE = "interface"
@@ -122,11 +122,8 @@ class HoledColumn:
         """
         wall = self.inner if self.interface == self.outer else self.outer
         inside = [s.start[1] for s in outline.segments if abs(s.start[0] - wall) < SAME_mm]
-        levels = [self.low]
-        for z in sorted([*inside, self.depth, self.high]):
-            if levels[-1] + SAME_mm < z <= self.high:
-                levels.append(z)
-        return levels
+        levels = self.low, *inside, self.depth, self.high
+        return distinct(z for z in levels if self.low <= z <= self.high)
 
 
 def column_of(part: Part) -> HoledColumn | None:

@@ -15,7 +15,7 @@ import numpy as np
 from flexspline.fea.solid.fillets import Fillet, fillets_of
 from flexspline.fea.solid.plan import PlanMesh, triangulated
 from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
-from flexspline.geometry.outline import SAME_mm
+from flexspline.geometry.outline import SAME_mm, distinct
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 
@@ -56,7 +56,7 @@ class Layers:
         """Radii of all rings [mm], rising; the first is the bore's, or the core's."""
         all_radii = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
         all_radii |= {r for f in self.fillets for r in (f.middle, f.far)}
-        rising = _distinct(all_radii)
+        rising = distinct(all_radii)
         if rising[0] > 0:
             return rising
         least = rising[1]
@@ -80,7 +80,7 @@ class Layers:
             ends.add(self.part.keyway.start)
         levels = [0.0]
         whole = {f.span for f in self.fillets}
-        for a, b in pairwise(_distinct(ends)):
+        for a, b in pairwise(distinct(ends)):
             arc = any(low < b - SAME_mm and a + SAME_mm < high for low, high in whole)
             count = 1 if arc else ceil(LAYERS_PER_FAR * (b - a) / far)
             levels += [a + (b - a) * k / count for k in range(1, count)] + [b]
@@ -172,11 +172,3 @@ class Layers:
                     count += len(on)
             prisms.append(np.hstack([low[kept], high[kept]]))
         return np.vstack(nodes), np.vstack(prisms)
-
-
-def _distinct(values: set[float]) -> list[float]:
-    distinct: list[float] = []
-    for v in sorted(values):
-        if not distinct or v > distinct[-1] + SAME_mm:
-            distinct.append(v)
-    return distinct

@@ -73,16 +73,12 @@ class LobeCorrection:
         assert whole is not None
         known = whole.stiffness
         work = work_of_stiffness(known.K_Nm_per_rad)
-        correction = lobe_correction(
-            model, self.supported, whole, WAVES_SHARE * self.tolerance * work
-        )
-        _, error = error_of(correction, self.material)
-        K, check = (
-            stiffness_of_work(work + lost) for lost in (correction.lost, correction.lost_by_work)
-        )
-        work += correction.lost
-        level = correction.level(K, check)
-        doubt = known.half_width + correction.doubt / work
+        change = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
+        _, error = error_of(change, self.material)
+        K, check = (stiffness_of_work(work + lost) for lost in (change.lost, change.lost_by_work))
+        work += change.lost
+        level = change.level(K, check)
+        doubt = known.half_width + change.doubt / work
         return MeshResult(level, error / work, doubt=doubt)
 
     def method(self, error: str) -> str:

@@ -85,11 +85,9 @@ class SlottedTube:
         """Material between the floor's middle and the bore, or the axis [mm]."""
         return self.slot.floor - self.inner
 
-    def grading(self, wanted: Grading) -> Grading:
+    def grading(self, plain: Grading) -> Grading:
         """Return the grading that gives the same error on a revolved mesh of many steps."""
-        return Grading(
-            NEAR_RATIO * wanted.near, FAR_RATIO * wanted.far, GROWTH_RATIO * wanted.growth
-        )
+        return Grading(NEAR_RATIO * plain.near, FAR_RATIO * plain.far, GROWTH_RATIO * plain.growth)
 
     def finer(self, grading: Grading) -> Finer:
         """What the meridian must have beside the grading: shorter edges along `edges`, where the stress

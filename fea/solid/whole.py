@@ -56,16 +56,14 @@ def whole_part(
     ValueError : the sector does not divide the circle into mirrored pairs.
     """
     unfolded = unfolding(mesh, 360.0)
-    face_patch = face_patches(mesh)
-    mirrored = face_patch[:, MIRRORED_FACES]
+    patch = face_patches(mesh)
+    mirrored = patch[:, MIRRORED_FACES]
     return WholePart(
         nodes=unfolded.mesh.nodes,
         cells=unfolded.mesh.cells,
         displacement=unfolded.vectors(displacement, parity),
         mises=mises[unfolded.node],
-        face_patch=np.concatenate(
-            [mirrored if k % 2 else face_patch for k in range(unfolded.copies)]
-        ),
+        face_patch=np.concatenate([mirrored if k % 2 else patch for k in range(unfolded.copies)]),
         start_deg=np.repeat(np.arange(unfolded.copies) * mesh.sector_deg, mesh.elements),
         patches=mesh.patches,
         sector_deg=mesh.sector_deg,

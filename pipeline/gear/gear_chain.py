@@ -53,13 +53,11 @@ class Chain:
         ------
         EquilibriumError
         """
-        equilibria: list[Equilibrium] = []
+        states: list[Equilibrium] = []
         with one_thread():
             for torque in torques_Nm:
-                equilibria.append(
-                    self.model.at_torque(torque, equilibria[-1] if equilibria else start)
-                )
-        return equilibria
+                states.append(self.model.at_torque(torque, states[-1] if states else start))
+        return states
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:
         """Return the output's rotations [rad]; errors as `along`."""

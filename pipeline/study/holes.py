@@ -96,16 +96,16 @@ def drifts(keys: Iterable[str]) -> bool:
 
 
 def with_holes(
-    figures: Mapping[str, float], design: Design, effect: HolesEffect
+    solved: Mapping[str, float], design: Design, effect: HolesEffect
 ) -> dict[str, float]:
     """Return the figures with K_e and its bounds corrected, and the factor beside them."""
     K, low, high = stiffness_keys("K_e")
-    value, doubt = effect.factor(design, figures[K])
+    value, doubt = effect.factor(design, solved[K])
     return {
-        **figures,
-        K: figures[K] * value,
-        low: figures[low] * (value - doubt),
-        high: figures[high] * (value + doubt),
+        **solved,
+        K: solved[K] * value,
+        low: solved[low] * (value - doubt),
+        high: solved[high] * (value + doubt),
         "K_e_bounds_guaranteed": 0.0,
         "K_e_holes_factor": value,
     }

@@ -68,14 +68,12 @@ class ResponseSurface:
         return Indices(*self._shares(first), *self._shares(total))
 
     def _shares(self, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        explained = members @ self.coefficients**2
+        part = members @ self.coefficients**2
         left = self.left_out**2
         half = reach(left @ members.T / left[:, 1:].sum(axis=1, keepdims=True))
         most = self.variance + self.misfit_high
-        value = explained / (self.variance + self.misfit)
-        return value, within(
-            explained / most - half, value, (explained + self.misfit_high) / most + half
-        )
+        value = part / (self.variance + self.misfit)
+        return value, within(part / most - half, value, (part + self.misfit_high) / most + half)
 
 
 def surface_through(
@@ -88,10 +86,8 @@ def surface_through(
     points : (n, k), values (n,) of designs that could be solved, block (n,) which of 0, 1, … each is of.
     """
     polynomials = tuple(map(_orthonormal, inputs))
-    all_pairs = tuple(combinations(range(len(inputs)), 2))
-    tried = [
-        _fitted(inputs, polynomials, pairs, points, values, block) for pairs in (all_pairs, ())
-    ]
+    full = tuple(combinations(range(len(inputs)), 2))
+    tried = [_fitted(inputs, polynomials, pairs, points, values, block) for pairs in (full, ())]
     return min((s for s in tried if s), key=lambda s: s.misfit, default=None)
 
 
@@ -132,17 +128,15 @@ def _fitted(
     )  # fmt: skip
 
 
-def _orthonormal(scattered: ScatteredInput) -> np.ndarray:
+def _orthonormal(source: ScatteredInput) -> np.ndarray:
     """1, z and z² of the standardised input, made orthonormal over its distribution."""
-    z = _standardised(
-        scattered, scattered.at((np.arange(QUADRATURE_NODES) + 0.5) / QUADRATURE_NODES)
-    )
+    z = _standardised(source, source.at((np.arange(QUADRATURE_NODES) + 0.5) / QUADRATURE_NODES))
     _, r = np.linalg.qr(np.vander(z, 3, increasing=True) / QUADRATURE_NODES**0.5)
     return np.asarray(np.linalg.inv(r * np.sign(np.diag(r))[:, None]))
 
 
-def _standardised(scattered: ScatteredInput, x: np.ndarray) -> np.ndarray:
-    return np.asarray((x - scattered.nominal) / scattered.std)
+def _standardised(source: ScatteredInput, x: np.ndarray) -> np.ndarray:
+    return np.asarray((x - source.nominal) / source.std)
 
 
 def _terms(

@@ -97,11 +97,11 @@ class TrialTables:
             attributes.setdefault(at, {})[key] = json.loads(text, object_pairs_hook=_shared_keys)
         values: dict[int, dict[str, float]] = {}
         spans: dict[str, BaseDistribution] = {}
-        param_query = select(
+        params = select(
             param.trial_id, param.param_name, param.param_value, param.distribution_json
         )
         for at, key, number, text in connection.execute(
-            param_query.join(trial).where(condition).order_by(param.param_id)
+            params.join(trial).where(condition).order_by(param.param_id)
         ):
             span = spans.get(text) or spans.setdefault(text, json_to_distribution(text))
             values.setdefault(at, {})[sys.intern(key)] = span.to_external_repr(number)
