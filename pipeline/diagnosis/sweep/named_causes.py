@@ -33,6 +33,7 @@ from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import
     loop_tells,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import magnitudes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.rounding_error import RoundingError
 from flexspline.pipeline.diagnosis.sweep.magnitudes.shared_size import shared_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rig_faults.torque_zero_drift import zero_moves
@@ -52,6 +53,8 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     evidence = identified.search.evidence
     sets = [(c.named(evidence), c.score) for c in explanations(evidence, identified.search)]
     magnitude, std = magnitudes(identified)
+    rounding = RoundingError.of(explained.prepared, identified.fit)
+    slopes = identified.fit.magnitude_slopes()
     timed = explained.prepared.sweep.history.time_s is not None
     told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
@@ -67,7 +70,9 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
-        std[c] = hypot(std[c], shared_std(identified, c, magnitude, rivals))
+        std[c] = hypot(
+            std[c], shared_std(identified, c, magnitude, rivals), rounding.std(slopes[c])
+        )
         found.append(
             NamedCause(
                 c,

@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
     without_unnamed,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
+from flexspline.pipeline.diagnosis.sweep.magnitudes.rounding_error import RoundingError
 from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
@@ -26,8 +27,9 @@ NEIGHBOUR_SHARE = 0.5
 def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibration:
     """What the units have in common, or one unit's own, by the best set.
 
-    The deviations have four parts: that of the posterior; that of the torque of friction ahead of the gap,
-    for which the posterior holds; the mean distance of other shapes' fits; and, of the compliance, what
+    The deviations have five parts: that of the posterior; that of the torque of friction ahead of the gap,
+    for which the posterior holds; the mean distance of other shapes' fits; what the encoder's rounding makes
+    of a gear within a step of the fitted one; and, of the compliance, what
     friction takes at the ends of its loop, or the load at which a soft wind-up is as stiff as simulated: each
     is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states,
     or than it is off.
@@ -60,7 +62,8 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     others = [_calibrated(other, unit) for other in fits]
     away = weight @ np.abs([o.gap_arcsec.value - found.gap_arcsec.value for o in others])
     soft_slope, soft_gap = _softening_std(fit, unit)
-    of_gap = hypot(found.gap_arcsec.std, gap, away, soft_gap)
+    read_slope, read_gap = _rounding_std(explained, fit, unit)
+    of_gap = hypot(found.gap_arcsec.std, gap, away, soft_gap, read_gap)
     found = replace(found, gap_arcsec=Estimate(found.gap_arcsec.value, of_gap))
     if (own := found.compliance) is None:
         return found
@@ -68,8 +71,20 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     away = weight @ np.abs(np.array(values) - own.value)
     prediction = fit.rig.prediction
     most = max(own.std, prediction.compliance_std, abs(own.value - prediction.compliance))
-    std = min(hypot(own.std, slope, away, soft_slope, _untold_std(fit, own.value)), most)
+    parts = (own.std, slope, away, soft_slope, read_slope, _untold_std(fit, own.value))
+    std = min(hypot(*parts), most)
     return replace(found, compliance=Estimate(own.value, std))
+
+
+def _rounding_std(
+    explained: ExplainedSweep, fit: SweepFit, unit: int | None
+) -> tuple[float, float]:
+    """Deviations of compliance and gap by the encoder's steps."""
+    error = RoundingError.of(explained.prepared, fit)
+    slope, gap = np.zeros((2, len(fit.posterior.mean)))
+    for first in (fit.units, *(() if unit is None else (fit.units + 2 + 2 * unit,))):
+        slope[first] = gap[first + 1] = 1.0
+    return error.std(slope), error.std(gap)
 
 
 def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
