@@ -19,7 +19,6 @@ from flexspline.pipeline.diagnosis.measurement.encoder_step import (
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import column_indices
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.residual.rounding import rounding_of_angle
 
 TRIED_GEARS = 48
 """Gears near the fitted one whose readings are rounded: the deviation is then known to a tenth."""
@@ -67,11 +66,11 @@ class RoundingError:
 
 def _undithered_step(prepared: PreparedSweep, fit: SweepFit) -> tuple[float, float]:
     """The encoder's step [arcsec], and the share of its rounding's rms that is not dithered."""
-    rounding = rounding_of_angle(prepared, fit)
-    step, left = rounding.step, rounding.left_arcsec
-    if step == 0:
-        step = common_step(prepared.sweep.angle_arcsec)
-        left = sqrt(undithered(prepared.noise.white, step))
+    sweep, variance = prepared.sweep, prepared.noise.white
+    if sweep.averaging is not None:
+        variance = sweep.averaging.variance_within(fit.measured_rig().compliance)
+    step = sweep.encoder_step_arcsec or common_step(sweep.angle_arcsec)
+    left = sqrt(undithered(variance, step))
     return step, left * sqrt(ROUNDING_RATIO) / step if step > 0 else 0.0
 
 
