@@ -10,12 +10,16 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.regressors import LEAST_PRIOR, Regressor
+from flexspline.pipeline.diagnosis.sweep.identification.shape_posterior import (
+    calibration_covariance,
+)
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
     terms_cancel,
     without_unnamed,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
 from flexspline.pipeline.diagnosis.sweep.magnitudes.rounding_error import RoundingError
+from flexspline.pipeline.diagnosis.sweep.magnitudes.soft_ends import soft_ends
 from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.written_model import beside_friction
@@ -34,29 +38,38 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     is the same but for a compliance, and no row tells. Shapes leave it no more open than the design states,
     or than it is off.
 
+    A wind-up near zero torque may be the soft ends of a gap (`soft_ends.py`): the deviations contain the
+    distance to that explanation, as far as it is likely.
+
     Beside terms without a name that cancel each other any compliance and gap fit. Then they are those of the
     simulation with the named causes alone, and differ from the best set's by a deviation more.
     """
     found = _of_best_set(explained, unit)
-    if not terms_cancel(explained.identified):
-        return found
-    simple = _calibrated(without_unnamed(explained.identified), unit)
+    if terms_cancel(explained.identified):
+        found = _both(_calibrated(without_unnamed(explained.identified), unit), found)
+    ends = soft_ends(explained.identified.fit)
+    return found if ends is None else _both(found, _calibrated(ends.fit, unit), ends.share)
+
+
+def _both(found: Calibration, other: Calibration, share: float = 1.0) -> Calibration:
+    """A calibration whose deviations contain the distance to another one, which is as likely as its share."""
     return replace(
-        simple,
-        gap_arcsec=_apart(simple.gap_arcsec, found.gap_arcsec),
-        compliance=simple.compliance
-        and found.compliance
-        and _apart(simple.compliance, found.compliance),
+        found,
+        gap_arcsec=_apart(found.gap_arcsec, other.gap_arcsec, share),
+        compliance=found.compliance
+        and other.compliance
+        and _apart(found.compliance, other.compliance, share),
     )
 
 
-def _apart(simple: Estimate, other: Estimate) -> Estimate:
-    return Estimate(simple.value, hypot(simple.std, simple.value - other.value))
+def _apart(simple: Estimate, other: Estimate, share: float) -> Estimate:
+    off = sqrt(share) * (simple.value - other.value)
+    return Estimate(simple.value, hypot(simple.std, off))
 
 
 def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     fit = explained.identified.fit
-    found = _calibrated(fit, unit)
+    found = _calibrated(_with_shapes(fit), unit)
     slope, gap = _beside_ahead(explained)
     fits, weight = fits_alike(explained.identified)
     others = [_calibrated(other, unit) for other in fits]
@@ -74,6 +87,14 @@ def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     parts = (own.std, slope, away, soft_slope, read_slope, _untold_std(fit, own.value))
     std = min(hypot(*parts), most)
     return replace(found, compliance=Estimate(own.value, std))
+
+
+def _with_shapes(fit: SweepFit) -> SweepFit:
+    """The fit, its calibration as well known as where the causes' shapes are fitted beside it."""
+    b = fit.posterior.base_count
+    covariance = fit.posterior.covariance.copy()
+    covariance[:b, :b] = calibration_covariance(fit)
+    return replace(fit, posterior=replace(fit.posterior, covariance=covariance))
 
 
 def _rounding_std(
