@@ -73,12 +73,12 @@ class RateDependence(Cause):
             shares += [s for s in LONGER_SHARES if s <= longest]
             common["longest_s"] = max(longest, shares[-1]) * ramp
         lags_s = sorted({max(s * ramp, shortest) for s in shares})
-        found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
-        found += [
+        shapes: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
+        shapes += [
             {"lag_s": max(LAG_SHARES[1] * ramp, shortest), "exponent": n, **common}
             for n in EXPONENTS
         ]
-        return found
+        return shapes
 
     def possible(self, shape: Shape) -> bool:
         longest = shape.get("longest_s", LAG_SHARES[-1] * shape["ramp_s"])

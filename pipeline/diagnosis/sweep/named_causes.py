@@ -59,7 +59,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
     units = explained.prepared.sweep.units
-    found = []
+    named = []
     for c in identified.named:
         unweighed = tuple(_other_rivals(explained, c, told, timed))
         shares = explained.shares.get(c)
@@ -73,7 +73,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         std[c] = hypot(
             std[c], shared_std(identified, c, magnitude, rivals), rounding.std(slopes[c])
         )
-        found.append(
+        named.append(
             NamedCause(
                 c,
                 probability=beside_unweighed(chance, unweighed),
@@ -93,7 +93,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()[OFFSET]
         slope = identified.fit.measured_rig().compliance
-        found.append(
+        named.append(
             NamedCause(
                 offset.id,
                 probability=probability_of_gain(explained.offset_nats),
@@ -107,7 +107,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
                 rms_arcsec=abs(slope * explained.offset_Nm),
             )
         )
-    return tuple(found)
+    return tuple(named)
 
 
 def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool) -> Iterator[str]:

@@ -44,21 +44,23 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     Beside terms without a name that cancel each other any compliance and gap fit. Then they are those of the
     simulation with the named causes alone, and differ from the best set's by a deviation more.
     """
-    found = _of_best_set(explained, unit)
+    calibration = _of_best_set(explained, unit)
     if terms_cancel(explained.identified):
-        found = _both(_calibrated(without_unnamed(explained.identified), unit), found)
+        calibration = _both(_calibrated(without_unnamed(explained.identified), unit), calibration)
     ends = soft_ends(explained.identified.fit)
-    return found if ends is None else _both(found, _calibrated(ends.fit, unit), ends.share)
+    return (
+        calibration if ends is None else _both(calibration, _calibrated(ends.fit, unit), ends.share)
+    )
 
 
-def _both(found: Calibration, other: Calibration, share: float = 1.0) -> Calibration:
+def _both(calibration: Calibration, other: Calibration, share: float = 1.0) -> Calibration:
     """A calibration whose deviations contain the distance to another one, which is as likely as its share."""
     return replace(
-        found,
-        gap_arcsec=_apart(found.gap_arcsec, other.gap_arcsec, share),
-        compliance=found.compliance
+        calibration,
+        gap_arcsec=_apart(calibration.gap_arcsec, other.gap_arcsec, share),
+        compliance=calibration.compliance
         and other.compliance
-        and _apart(found.compliance, other.compliance, share),
+        and _apart(calibration.compliance, other.compliance, share),
     )
 
 
@@ -69,24 +71,24 @@ def _apart(simple: Estimate, other: Estimate, share: float) -> Estimate:
 
 def _of_best_set(explained: ExplainedSweep, unit: int | None) -> Calibration:
     fit = explained.identified.fit
-    found = _calibrated(_with_shapes(fit), unit)
+    calibration = _calibrated(_with_shapes(fit), unit)
     slope, gap = _beside_ahead(explained)
     fits, weight = fits_alike(explained.identified)
     others = [_calibrated(other, unit) for other in fits]
-    away = weight @ np.abs([o.gap_arcsec.value - found.gap_arcsec.value for o in others])
+    away = weight @ np.abs([o.gap_arcsec.value - calibration.gap_arcsec.value for o in others])
     soft_slope, soft_gap = _softening_std(fit, unit)
     read_slope, read_gap = _rounding_std(explained, fit, unit)
-    of_gap = hypot(found.gap_arcsec.std, gap, away, soft_gap, read_gap)
-    found = replace(found, gap_arcsec=Estimate(found.gap_arcsec.value, of_gap))
-    if (own := found.compliance) is None:
-        return found
+    of_gap = hypot(calibration.gap_arcsec.std, gap, away, soft_gap, read_gap)
+    calibration = replace(calibration, gap_arcsec=Estimate(calibration.gap_arcsec.value, of_gap))
+    if (own := calibration.compliance) is None:
+        return calibration
     values = [own.value if o.compliance is None else o.compliance.value for o in others]
     away = weight @ np.abs(np.array(values) - own.value)
     prediction = fit.rig.prediction
     most = max(own.std, prediction.compliance_std, abs(own.value - prediction.compliance))
     parts = (own.std, slope, away, soft_slope, read_slope, _untold_std(fit, own.value))
     std = min(hypot(*parts), most)
-    return replace(found, compliance=Estimate(own.value, std))
+    return replace(calibration, compliance=Estimate(own.value, std))
 
 
 def _with_shapes(fit: SweepFit) -> SweepFit:
@@ -114,7 +116,7 @@ def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
     Between the law found and its neighbours, of another power or load, lie those that were not tried.
     """
     terms, chosen = fit.evidence.terms, fit.posterior.terms
-    found = _calibrated(fit, unit)
+    calibration = _calibrated(fit, unit)
     off = [(0.0, 0.0)]
     for i in chosen:
         if _bend(terms[i]) is None:
@@ -125,9 +127,9 @@ def _softening_std(fit: SweepFit, unit: int | None) -> tuple[float, float]:
             other = fit_regressors(fit.evidence, [j if k == i else k for k in chosen])
             next_one = _calibrated(other, unit)
             slope = 0.0
-            if found.compliance is not None and next_one.compliance is not None:
-                slope = next_one.compliance.value - found.compliance.value
-            off.append((slope, next_one.gap_arcsec.value - found.gap_arcsec.value))
+            if calibration.compliance is not None and next_one.compliance is not None:
+                slope = next_one.compliance.value - calibration.compliance.value
+            off.append((slope, next_one.gap_arcsec.value - calibration.gap_arcsec.value))
     slope, gap = (NEIGHBOUR_SHARE * np.abs(off).max(axis=0)).tolist()
     return slope, gap
 
@@ -161,11 +163,11 @@ def _untold_std(fit: SweepFit, compliance: float) -> float:
     Of a compliance that lies beyond that doubt it is too small; it is then taken as large as the distance.
     """
     prediction = fit.rig.prediction
-    found = compliance - prediction.compliance
-    doubt = max(prediction.compliance_std, abs(found), LEAST_PRIOR)
+    change = compliance - prediction.compliance
+    doubt = max(prediction.compliance_std, abs(change), LEAST_PRIOR)
 
     def likely(changes: np.ndarray) -> np.ndarray:
-        off = (changes + found) / doubt
-        return np.asarray(np.exp(((found / doubt) ** 2 - off**2) / 2).clip(max=1.0))
+        off = (changes + change) / doubt
+        return np.asarray(np.exp(((change / doubt) ** 2 - off**2) / 2).clip(max=1.0))
 
     return spring_std(fit, likely)

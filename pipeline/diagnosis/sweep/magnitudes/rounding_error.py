@@ -78,10 +78,10 @@ def _sawtooth(steps: np.ndarray, kept_share: float) -> np.ndarray:
     """Mean of the rounded less the true reading, both in steps, under noise that keeps a share of its rms."""
     if kept_share > 1 - 1e-6:
         return np.asarray(np.round(steps) - steps)
-    found = np.zeros(steps.shape)
+    off = np.zeros(steps.shape)
     for k in range(1, HARMONICS + 1):
         size = (-1) ** k * kept_share ** (k**2) / (np.pi * k)
         if abs(size) * np.pi * k < LEAST_LEFT**2:
             break
-        found += size * np.sin(2 * np.pi * k * steps)
-    return found
+        off += size * np.sin(2 * np.pi * k * steps)
+    return off
