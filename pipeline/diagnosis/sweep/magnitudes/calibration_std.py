@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import (
     terms_cancel,
     without_unnamed,
 )
+from flexspline.pipeline.diagnosis.sweep.magnitudes.long_lags import long_lags
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import fits_alike
 from flexspline.pipeline.diagnosis.sweep.magnitudes.rounding_error import RoundingError
 from flexspline.pipeline.diagnosis.sweep.magnitudes.soft_ends import soft_ends
@@ -47,6 +48,9 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     calibration = _of_best_set(explained, unit)
     if terms_cancel(explained.identified):
         calibration = _both(_calibrated(without_unnamed(explained.identified), unit), calibration)
+    lags = long_lags(explained.identified.fit)
+    for other, share in zip(lags.fits, lags.shares, strict=True):
+        calibration = _both(calibration, _calibrated(other, unit), share)
     ends = soft_ends(explained.identified.fit)
     return (
         calibration if ends is None else _both(calibration, _calibrated(ends.fit, unit), ends.share)

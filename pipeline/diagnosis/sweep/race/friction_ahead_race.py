@@ -34,7 +34,6 @@ from flexspline.pipeline.diagnosis.sweep.evidence.prepare import (
     prepare,
     true_history,
 )
-from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_tuning import (
     TunedAhead,
     ahead_element,
@@ -53,9 +52,6 @@ PRESUMED_TERMS: Mapping[str, Mapping[str, float]] = {
 }
 """Terms that stand beside the friction before any race, by cause, of the shapes that have these parameters:
 linear lags, and a soft wind-up at several scales."""
-MOST_RAMPS = 4.0
-"""Longest of these lags over a ramp, where torque is never held. A longer one is half a straight line over
-the loop, and beside it friction would be known too well."""
 NEVER = {"": 0.0}
 """Parameters that no shape has."""
 AHEAD_RACES = 3
@@ -219,16 +215,13 @@ def _alone(prepared: PreparedSweep) -> TunedAhead:
     Stiffness, gap, lags and a soft wind-up: a lag opens the loop as friction does, and a wind-up bends it
     near the gap, but neither moves the gap's step. Without them the friction would be as large as all.
     """
-    few = prepared.columns.only(lambda t: t.owner in LINEAR or _is_presumed(t))
+    few = prepared.columns.only(
+        lambda t: (
+            t.owner in LINEAR or PRESUMED_TERMS.get(t.owner, NEVER).items() <= dict(t.shape).items()
+        )
+    )
     evidence = gaussian_evidence(few, prepared.target, prepared.kept, prepared.noise)
     return tuned_ahead(prepared, evidence, range(len(few.terms)))
-
-
-def _is_presumed(term: Regressor) -> bool:
-    """Whether a term stands beside the friction before any race."""
-    if term.owner == RATE and term.shape["lag_s"] > MOST_RAMPS * term.shape["ramp_s"]:
-        return False
-    return PRESUMED_TERMS.get(term.owner, NEVER).items() <= dict(term.shape).items()
 
 
 def _crossing(explained: ExplainedSweep) -> Crossing | None:
