@@ -43,9 +43,9 @@ class Calibration:
             stated = prediction.compliance, prediction.compliance_std
             measured.append(("compliance", self.compliance, *stated))
         return tuple(
-            FarOff(name, found, abs(found.value - simulated) / std)
-            for name, found, simulated, std in measured
-            if abs(found.value - simulated) > beyond * max(std, found.std) and std > 0
+            FarOff(name, estimate, abs(estimate.value - simulated) / std)
+            for name, estimate, simulated, std in measured
+            if abs(estimate.value - simulated) > beyond * max(std, estimate.std) and std > 0
         )
 
 

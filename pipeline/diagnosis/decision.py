@@ -137,7 +137,7 @@ def held_against(
         for e in race
         if may_replace(e) and is_rival(best.score - e.score, best.penalised - e.penalised)
     ]
-    found = []
+    held = []
     for cause in best.causes:
         kept = set(best.causes) - {cause}
         alternatives: dict[str, E] = {}
@@ -148,8 +148,8 @@ def held_against(
                         alternatives.setdefault(other, e)
         without = max((null, *(score for causes, score in scored if cause not in causes)))
         gain = best.score - without
-        found.append(HeldAgainst(cause, probability(cause, scored), gain, alternatives))
-    return found
+        held.append(HeldAgainst(cause, probability(cause, scored), gain, alternatives))
+    return held
 
 
 def weights(scores: ArrayLike) -> np.ndarray:
@@ -216,15 +216,17 @@ def decided(
     sure : whether the best explanation beats the simulation by enough, and its sizes are known well enough
         (`is_significant`), to be named.
     """
-    found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
+    sorted_causes = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
     left = tuple(unexplained)
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
         # a suspicion does not count beside an effect without a name
         likely = (
-            c for c in found if is_significant(c, BESIDE_UNKNOWN) and c.probability >= EVEN_ODDS
+            c
+            for c in sorted_causes
+            if is_significant(c, BESIDE_UNKNOWN) and c.probability >= EVEN_ODDS
         )
         return Decision("unknown", tuple(likely), left)
-    if not found:
+    if not sorted_causes:
         return Decision("unknown", (), left) if structure else CONSISTENT
-    open_ = not sure or any(c.alternatives for c in found)
-    return Decision("ambiguous" if open_ else "named", found, left)
+    open_ = not sure or any(c.alternatives for c in sorted_causes)
+    return Decision("ambiguous" if open_ else "named", sorted_causes, left)

@@ -162,10 +162,10 @@ def diagnose_measurement(
     from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 
     bench = context or analysis_context(design)
-    outcome, found = diagnose_specimens(
+    outcome, specimen_analysis = diagnose_specimens(
         design, measurement, K_b, K_e, bench, full=context is not None
     )
-    return Diagnosis(design, measurement, prediction, outcome, specimens=found)
+    return Diagnosis(design, measurement, prediction, outcome, specimens=specimen_analysis)
 
 
 def _along_gear_curve(straight: Prediction, chain: Chain, measurement: Measurement) -> Prediction:

@@ -47,13 +47,13 @@ def separations(
     A difference counts only beyond what a zero, a compliance and a gap would absorb; `calibration`
     are the standard deviations of these two [arcsec per N·m, arcsec], None where both are free.
     """
-    found = []
+    separated = []
     for plan in plans:
         angles = [m.angle_of(plan.history) for m in models]
         columns = _calibration_columns(plan.history, float(np.abs(angles).max()), calibration)
         apart = [_separation(a - b, columns, noise_arcsec) for a, b in combinations(angles, 2)]
-        found.append(PlanSeparation(plan.vary, plan.doing, min(apart, default=0.0)))
-    return sorted(found, key=lambda s: -s.separation)
+        separated.append(PlanSeparation(plan.vary, plan.doing, min(apart, default=0.0)))
+    return sorted(separated, key=lambda s: -s.separation)
 
 
 def most_telling(
@@ -64,8 +64,8 @@ def most_telling(
     Seven positions are not worth more than two for their number alone.
     """
     rows = {plan.doing: len(plan.history) for plan in plans}
-    found = separations(plans, models, noise_arcsec)
-    return max(found, key=lambda s: s.separation / rows[s.doing] ** 0.5)
+    separated = separations(plans, models, noise_arcsec)
+    return max(separated, key=lambda s: s.separation / rows[s.doing] ** 0.5)
 
 
 def _calibration_columns(

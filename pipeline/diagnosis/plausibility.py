@@ -150,12 +150,12 @@ def _interchanged(size: SweepSize, sweep: Sweep) -> bool:
 def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
     """Units in which the readings would be right, the likeliest first."""
     angle, torque = (sweep.read_as.column(name) for name in ("angle", "torque"))
-    found: list[tuple[float, UnitSuspect]] = []
+    suspected: list[tuple[float, UnitSuspect]] = []
     if angle:
         if abs(size.chord) > 1 and _whole(sweep.angle_arcsec / angle.factor):
-            found.append((0.0, UnitSuspect(angle.head)))
+            suspected.append((0.0, UnitSuspect(angle.head)))
         for unit, off in likely_units((size.chord, size.compliance), angle, ANGLE_UNITS, ANGLE):
-            found.append((off, UnitSuspect(angle.head, unit, symbol(angle.unit))))
+            suspected.append((off, UnitSuspect(angle.head, unit, symbol(angle.unit))))
     if torque and size.compliance:
         for unit, off in likely_units((1 / size.compliance,), torque, TORQUE_UNITS, TORQUE):
             elastic = size.simulated_arcsec - size.simulated_gap_arcsec
@@ -165,10 +165,10 @@ def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
             )
             if abs(chord) < np.log(LIKELY_RATIO):
                 off = max(off, abs(chord))
-                found.append((off, UnitSuspect(torque.head, unit, symbol(torque.unit))))
-    found += [(0.0, hint) for hint in unit_hints(size, sweep)]
-    best = min((off for off, _ in found), default=0.0)
-    likely = (one for off, one in sorted(found) if off <= best + np.log(AS_LIKELY_RATIO))
+                suspected.append((off, UnitSuspect(torque.head, unit, symbol(torque.unit))))
+    suspected += [(0.0, hint) for hint in unit_hints(size, sweep)]
+    best = min((off for off, _ in suspected), default=0.0)
+    likely = (one for off, one in sorted(suspected) if off <= best + np.log(AS_LIKELY_RATIO))
     return tuple(dict.fromkeys(likely))
 
 
@@ -185,8 +185,8 @@ def likely_unit(
     ratio: float, column: ReadColumn | None, units: tuple[str, ...], factors: Factors
 ) -> str:
     """The likeliest of them, "" for none."""
-    found = likely_units((ratio,), column, units, factors) if column else []
-    return min(found, key=lambda pair: pair[1])[0] if found else ""
+    likely = likely_units((ratio,), column, units, factors) if column else []
+    return min(likely, key=lambda pair: pair[1])[0] if likely else ""
 
 
 def _suspect(column: ReadColumn | None, unit: str) -> UnitSuspect | None:

@@ -37,5 +37,5 @@ def _median(values: np.ndarray) -> float:
     both = (middle,) if len(values) % 2 else (middle - 1, middle)
     if not len(values) or np.isnan(values).any():
         return np.nan
-    found = np.partition(values, both)
-    return float(found[both[0]] + found[both[-1]]) / 2
+    ordered = np.partition(values, both)
+    return float(ordered[both[0]] + ordered[both[-1]]) / 2

@@ -149,14 +149,14 @@ def unit_hints(
     slope = slope or _line_slope(size)
     if slope.ratio <= 0 or not (slope.sharp or slope.far):
         return ()
-    found: list[UnitSuspect] = []
+    hints: list[UnitSuspect] = []
     torque, angle = (sweep.read_as.column(name) for name in ("torque", "angle"))
     if torque is not None:
-        found += _hints(torque, TORQUES, slope, 1)
+        hints += _hints(torque, TORQUES, slope, 1)
     if angle is not None and size.chord > 0:
         off = abs(log(size.chord / slope.ratio))
-        found += _hints(angle, ANGLES, slope, -1) if off < CHORD_NEAR else []
-    return tuple(found)
+        hints += _hints(angle, ANGLES, slope, -1) if off < CHORD_NEAR else []
+    return tuple(hints)
 
 
 def _named_slope(series: NamedCause) -> SlopeRatio:

@@ -90,7 +90,7 @@ def diagnose_with_stiffness(
 
         chain = chain_of(context())
     with (progress or Progress()).stage("diagnosis"):
-        found = diagnose_measurement(
+        diagnosis = diagnose_measurement(
             design, measurement, used, None if stated else context(), chain, stated
         )
-    return found, used
+    return diagnosis, used

@@ -21,6 +21,6 @@ def loop_widths(angle: Callable[[History], np.ndarray], largest_Nm: float) -> np
     Torque goes to and fro twice, because the first loop still depends on the state before it.
     """
     up = np.linspace(-largest_Nm, largest_Nm, LOOP_ROWS)
-    found = angle(History.course(np.concatenate([up, up[::-1], up, up[::-1]])))
-    loading, unloading = found[2 * LOOP_ROWS : 3 * LOOP_ROWS], found[3 * LOOP_ROWS :]
+    twist = angle(History.course(np.concatenate([up, up[::-1], up, up[::-1]])))
+    loading, unloading = twist[2 * LOOP_ROWS : 3 * LOOP_ROWS], twist[3 * LOOP_ROWS :]
     return np.asarray(unloading[::-1] - loading)

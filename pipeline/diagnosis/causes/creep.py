@@ -85,12 +85,12 @@ class Creep(Cause):
         if rig.duration_s <= 0 or hold < SHORTEST_HOLD * ramp or hold == 0:
             return []
         long = max(10 * hold, rig.duration_s)
-        found: list[Shape] = [
+        shapes: list[Shape] = [
             {"shortest_s": low, "longest_s": long, "exponent": n, "hold_s": hold}
             for n in EXPONENTS
             for low in sorted({hold / part for part in HOLD_DIVISORS})
         ]
-        found += [
+        shapes += [
             {
                 "shortest_s": hold / part,
                 "longest_s": ENDS_WITHIN * hold,
@@ -102,8 +102,10 @@ class Creep(Cause):
         for share in SINGLE_TIMES:
             tau = share * hold
             if tau > LONGER_THAN_LAG * ramp:
-                found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
-        return found
+                shapes.append(
+                    {"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold}
+                )
+        return shapes
 
     def kind(self, shape: Shape) -> tuple[float | str, ...]:
         if self._is_alone(shape):

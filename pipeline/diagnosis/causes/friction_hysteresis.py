@@ -98,19 +98,19 @@ class FrictionHysteresis(Cause):
     def shapes(self, rig: FitContext) -> list[Shape]:
         largest = rig.largest_Nm
         deadband = max(DEADBAND * largest, NOISE_LEFT * deadband_Nm(rig.history))
-        found: list[Shape] = []
+        shapes: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
         least = deadband / largest
         shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-1]]
         for share in shares:
             for spread, loaded, held, start in VARIANTS:
-                found.append({
+                shapes.append({
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
                     "deadband_Nm": deadband, "exponent": float(spread == DAHL),
                     "reach": CLOSING_REACH * (loaded == CLOSING), "growth": float(loaded == GROWING),
                 })  # fmt: skip
-        return found + [
+        return shapes + [
             {**kind, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
             for kind in ({SQUARE: 1.0}, *({POWER: p} for p in POWERS)) for held in (1, 0)
         ]  # fmt: skip
@@ -145,12 +145,12 @@ class FrictionHysteresis(Cause):
         kinds: tuple[tuple[str, Callable[..., list[np.ndarray]]], ...] = (
             ("threshold_Nm", self._behind), (POWER, micro_slips), (SQUARE, square_loops),
         )  # fmt: skip
-        found: dict[int, np.ndarray] = {}
+        columns_by_id: dict[int, np.ndarray] = {}
         for key, columns in kinds:
             own = [s for s in shapes if key in s]
-            found |= zip(map(id, own), columns(own, history), strict=True)
+            columns_by_id |= zip(map(id, own), columns(own, history), strict=True)
         none = np.zeros((len(history), 1))
-        return [found.get(id(s), none) for s in shapes]
+        return [columns_by_id.get(id(s), none) for s in shapes]
 
     def _behind(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
         """Columns of elements with a threshold."""

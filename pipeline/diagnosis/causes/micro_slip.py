@@ -52,11 +52,11 @@ def micro_slips(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
     parts = [thresholds(s[POWER], s["largest_torque_Nm"]) for s in shapes]
     each = np.concatenate([r for r, _ in parts])
     play = torque[:, None] - stops(history, torque, each, np.zeros(len(each)))
-    found, at = [], 0
+    columns, at = [], 0
     for s, (r, weight) in zip(shapes, parts, strict=True):
         twist = play[:, at : at + len(r)] @ weight
         at += len(r)
         if not s["held"]:
             twist = twist - history.torque_Nm / s["largest_torque_Nm"]
-        found.append(twist[:, None])
-    return found
+        columns.append(twist[:, None])
+    return columns

@@ -73,8 +73,8 @@ def _ways_of(history: History, torque_Nm: np.ndarray) -> list[_Ways]:
     if key not in history.memo or history.memo[key][0] is not torque_Nm:
         ways = [_Ways.of(torque_Nm[rows]) for rows in history.unit_slices]
         history.memo[key] = torque_Nm, ways
-    found: list[_Ways] = history.memo[key][1]
-    return found
+    ways_of_rows: list[_Ways] = history.memo[key][1]
+    return ways_of_rows
 
 
 def _clipped_sums(first: np.ndarray, steps: np.ndarray, limit: np.ndarray) -> np.ndarray:

@@ -29,7 +29,8 @@ LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
 """The same where torque is never held. Four of the quickest cycle's ramps are 98 % of its twist lost."""
 LONGEST_SHARE = 4.0
 """Of the slowest cycle's ramp, there. With half of it, a lag of a quarter of a triangle's cycle was named
-friction, and one of a sine's had two thirds of its size."""
+friction, and one of a sine's had two thirds of its size. With 16, a lag of four cycles was the rival of a
+stiffer gear; longer ones are in the deviations alone (`../sweep/magnitudes/long_lags.py`)."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 """Of the rate: twist that levels off with it or steepens; refined, so that steps of a third do."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.4, 1.8
@@ -72,12 +73,12 @@ class RateDependence(Cause):
             shares += [s for s in LONGER_SHARES if s <= longest]
             common["longest_s"] = max(longest, shares[-1]) * ramp
         lags_s = sorted({max(s * ramp, shortest) for s in shares})
-        found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
-        found += [
+        shapes: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
+        shapes += [
             {"lag_s": max(LAG_SHARES[1] * ramp, shortest), "exponent": n, **common}
             for n in EXPONENTS
         ]
-        return found
+        return shapes
 
     def possible(self, shape: Shape) -> bool:
         longest = shape.get("longest_s", LAG_SHARES[-1] * shape["ramp_s"])
@@ -101,7 +102,9 @@ class RateDependence(Cause):
         return (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
 
     def spread(self, shape: Shape, rig: FitContext) -> float:
-        return self.spread_share * rig.scale_arcsec / shape["rate_Nm_per_s"]
+        """Seen through a lag longer than a ramp, torque changes by less than its rate."""
+        longer = max(1.0, shape["lag_s"] / shape["ramp_s"])
+        return self.spread_share * rig.scale_arcsec / shape["rate_Nm_per_s"] * longer
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
         """By least squares over the rates that the record ran at."""

@@ -47,11 +47,11 @@ class SensorDrift(Cause):
         if rig.duration_s <= 0:
             return []
         d = rig.duration_s
-        found: list[Shape] = [
+        shapes: list[Shape] = [
             {"exponent": n, "settling_s": 0.0, "duration_s": d} for n in EXPONENTS
         ]
-        found += [{"exponent": 1.0, "settling_s": s * d, "duration_s": d} for s in SATURATION]
-        return found
+        shapes += [{"exponent": 1.0, "settling_s": s * d, "duration_s": d} for s in SATURATION]
+        return shapes
 
     def possible(self, shape: Shape) -> bool:
         settling = shape["settling_s"] / shape["duration_s"]

@@ -91,13 +91,13 @@ class StiffnessHardening(Cause):
         laws += [("rational", s) for s in SCALES]
         laws += [("cubic spring", c) for c in CUBIC_SHARES]
         where = _possible(rig)
-        found: list[Shape] = [
+        shapes: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.largest_Nm}
             for law, p in laws
             for held in self._held({"law": LAWS[law], "parameter": p})
             if held in where
         ]
-        found += [
+        shapes += [
             {
                 "law": LAWS["two knees"], "parameter": p, "second": q, "share": share, "held": held,
                 "largest_torque_Nm": rig.largest_Nm,
@@ -107,7 +107,7 @@ class StiffnessHardening(Cause):
             for held in HELD
             if held in where
         ]  # fmt: skip
-        return found
+        return shapes
 
     def but_for_a_spring(self, shape: Shape, rig: FitContext) -> list[Shape]:
         held = {*self._held(shape)} & {*_possible(rig)} - {shape["held"]}

@@ -45,11 +45,11 @@ def decide(
             and _channels(h) == _channels(best)
         )
 
-    found = []
+    causes_of_units = []
     for i, held in enumerate(held_against(best, hypotheses, SIMULATION_SCORE, may_replace)):
         magnitude, std = _magnitude(best.best, i, rig, prediction)
         term = best.best.terms[i]
-        found.append(
+        causes_of_units.append(
             NamedCause(
                 held.cause,
                 probability=held.probability,
@@ -62,9 +62,13 @@ def decide(
                 own_units=() if best.own is None else (names[best.own],),
             )
         )
-    sure = best.score > OVER_SIMULATION_NATS and all(map(is_significant, found))
+    sure = best.score > OVER_SIMULATION_NATS and all(map(is_significant, causes_of_units))
     return decided(
-        found, (), named_rms=hypot(*(c.rms_arcsec for c in found)), unnamed_rms=0.0, sure=sure
+        causes_of_units,
+        (),
+        named_rms=hypot(*(c.rms_arcsec for c in causes_of_units)),
+        unnamed_rms=0.0,
+        sure=sure,
     )
 
 

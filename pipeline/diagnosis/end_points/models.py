@@ -69,7 +69,7 @@ def rivals_for_unit(
     """
     excess = unit.total_arcsec - unit.predicted_arcsec
     row = points.torque_Nm == unit.torque_Nm
-    found = []
+    models = []
     for cause in ids:
         for term in end_point_regressors(points, rig):
             column = float(term.column[row][0])
@@ -78,9 +78,9 @@ def rivals_for_unit(
             amplitude = excess / column
             if amplitude < 0 and term.positive:
                 continue
-            found.append(_model(prediction, term, amplitude))
+            models.append(_model(prediction, term, amplitude))
             break
-    return found
+    return models
 
 
 def _model(prediction: Prediction, term: EndPointRegressor, amplitude: float) -> ExtendedModel:

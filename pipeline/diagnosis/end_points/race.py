@@ -81,15 +81,15 @@ def race(
         )
     ids = list(dict.fromkeys(t.cause for t in terms))
     null = unit_evidence(deviations, ())
-    found = [Hypothesis((), None, SIMULATION_SCORE, null.likelihood, null)]
+    hypotheses = [Hypothesis((), None, SIMULATION_SCORE, null.likelihood, null)]
     for cause in ids:
         mine = [t for t in terms if t.cause == cause]
         odds = (UNNAMED_CURVE_NATS if cause == UNNAMED else 0.0) - log(len(ids))
-        found.append(_of(deviations, [(t,) for t in mine], None, odds, null))
+        hypotheses.append(_of(deviations, [(t,) for t in mine], None, odds, null))
         for u in suspects if deviations.units > 1 and cause != UNNAMED else ():
             rows = deviations.unit == u
             one = [(t.of(rows),) for t in mine]
-            found.append(_of(deviations, one, u, odds - log(deviations.units), null))
+            hypotheses.append(_of(deviations, one, u, odds - log(deviations.units), null))
     for a, b in combinations(ids, 2) if several else ():
         if {a, b} <= CONCAVE:
             continue
@@ -99,8 +99,8 @@ def race(
             - log(len(ids) ** 2 / 2)
             + (UNNAMED_CURVE_NATS if UNNAMED in (a, b) else 0.0)
         )
-        found.append(_of(deviations, pairs, None, odds, null))
-    return sorted(found, key=lambda h: -h.score)
+        hypotheses.append(_of(deviations, pairs, None, odds, null))
+    return sorted(hypotheses, key=lambda h: -h.score)
 
 
 def several_torques(deviations: UnitDeviations) -> bool:

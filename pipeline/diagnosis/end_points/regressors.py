@@ -77,7 +77,7 @@ def end_point_regressors(points: EndPoints, rig: FitContext) -> list[EndPointReg
         known_causes()[ASYMMETRY],
     )
     friction = known_causes()[FRICTION]
-    found = [
+    regressors = [
         EndPointRegressor(clearance.id, "total", ones, clearance.spread({}, rig), False, Element({}, (1.0,))),
         EndPointRegressor(series.id, "total", 2 * torque, series.spread({}, rig), False, Element({}, (1.0,))),
         EndPointRegressor(asymmetry.id, "mid", torque, asymmetry.spread({}, rig), False,
@@ -86,7 +86,7 @@ def end_point_regressors(points: EndPoints, rig: FitContext) -> list[EndPointReg
     for law in HARDENING_SHAPES:
         for held in HELD:
             shape = {**law, "held": held, "largest_torque_Nm": largest}
-            found.append(EndPointRegressor(
+            regressors.append(EndPointRegressor(
                 hardening.id, "total", 2 * _at(hardening, shape, torque), hardening.spread(shape, rig),
                 True, Element(shape, (1.0,)),
             ))  # fmt: skip
@@ -97,11 +97,11 @@ def end_point_regressors(points: EndPoints, rig: FitContext) -> list[EndPointReg
         }  # fmt: skip
         width = 2 * np.minimum(1.0, torque / (share * largest))
         for side in SIDES:
-            found.append(EndPointRegressor(
+            regressors.append(EndPointRegressor(
                 friction.id, "total", side * width, friction.spread(shape, rig), True,
                 Element(shape, (1.0,)),
             ))  # fmt: skip
-    return found
+    return regressors
 
 
 def _at(cause: Cause, shape: Shape, torque: np.ndarray) -> np.ndarray:

@@ -59,7 +59,7 @@ def unit_findings(
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
     total = points.total_arcsec
-    found = []
+    findings = []
     for name, rows in zip(names, deviations.unit_rows, strict=True):
         p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]
         i, p = rows[int(np.argmin(p_values))], min(p_values)
@@ -72,12 +72,12 @@ def unit_findings(
             if off
             else 0.0
         )
-        found.append(UnitFinding(
+        findings.append(UnitFinding(
             name, of.torque_Nm, float(total[i]), of.total_arcsec, of.std_arcsec, float(deviations.mid[i]),
             z, p, float(-np.expm1(looked * np.log1p(-min(p, LARGEST_P_VALUE)))),
             of.explanation(float(total[i])),
         ))  # fmt: skip
-    return tuple(found)
+    return tuple(findings)
 
 
 def mid_positions(deviations: UnitDeviations, prediction: Prediction) -> MidPositions:

@@ -84,11 +84,11 @@ def _ours(quantity: str, suffix: str) -> ColumnName | None:
     if unit is not None:
         return ColumnName(quantity, unit)
     words, unit = _parted(f"{quantity}_{suffix}")
-    found = _in_words(words, unit)
+    in_words = _in_words(words, unit)
     one_word = "_" not in suffix and suffix.lower() not in SAYS_NOTHING | ANOTHER | INPUT
     if unit is None and one_word and QUANTITY_OF.get(suffix.lower()) is None:
         return ColumnName(quantity, None, suffix)  # torque_lbf
-    return found
+    return in_words
 
 
 def _parted(text: str) -> tuple[str, str | None]:

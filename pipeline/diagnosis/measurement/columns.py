@@ -89,7 +89,7 @@ def _refuse_parted_time(grid: CellGrid) -> None:
 def _chosen(grid: CellGrid) -> list[tuple[int, ColumnName]]:
     """Place and meaning of each column that is read."""
     below = grid.unit_row or ("",) * len(grid.head)
-    found: dict[str, list[tuple[int, ColumnName]]] = {}
+    candidates: dict[str, list[tuple[int, ColumnName]]] = {}
     seen: set[str] = set()
     for at, (head, unit) in enumerate(zip(grid.head, below, strict=True)):
         if head and head in seen:
@@ -97,8 +97,8 @@ def _chosen(grid: CellGrid) -> list[tuple[int, ColumnName]]:
         seen.add(head)
         name = _with_row(grid, head, unit)
         if name is not None:
-            found.setdefault(name.quantity, []).append((at, name))
-    chosen = [_one(grid, rivals) for rivals in found.values()]
+            candidates.setdefault(name.quantity, []).append((at, name))
+    chosen = [_one(grid, rivals) for rivals in candidates.values()]
     return sorted((c for c in chosen if c is not None), key=lambda pair: pair[0])
 
 

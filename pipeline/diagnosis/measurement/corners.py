@@ -43,7 +43,7 @@ def corners_of(history: History) -> list[TorqueCorner]:
     fast = ramp_rate(history)
     if fast == 0 or history.time_s is None:
         return []
-    found = []
+    corners = []
     for unit, rows in enumerate(history.unit_slices):
         if len(rows) < FEWEST_ROWS_OF_UNIT:
             continue
@@ -55,11 +55,11 @@ def corners_of(history: History) -> list[TorqueCorner]:
         widths = sorted({min(w, longest) for w in (width, 2 * width, 4 * width)})
         change = _sudden(time, torque / fast, noise, widths, cycle)
         most = max(MET_WIDTHS * width, ROWS_BESIDE_CORNER)
-        found += [
+        corners += [
             TorqueCorner(unit, _met(time, torque, i, way), float(change[i]))
             for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), most)
         ]
-    return found
+    return corners
 
 
 def _sudden(
@@ -71,11 +71,13 @@ def _sudden(
     A corner is spread over the rows that a rate is taken over, with one sign. A short ramp between two holds
     begins and ends with opposite signs, however near.
     """
-    found = np.zeros(len(time_s))
+    largest_change = np.zeros(len(time_s))
     for width in widths:
         taken = {side: np.zeros(len(time_s), bool) for side in (-1.0, 1.0)}
-        for i in np.flatnonzero(found):
-            taken[float(np.sign(found[i]))][max(0, i - 2 * width) : i + 2 * width + 1] = True
+        for i in np.flatnonzero(largest_change):
+            taken[float(np.sign(largest_change[i]))][max(0, i - 2 * width) : i + 2 * width + 1] = (
+                True
+            )
         span = np.maximum(time_s[width:] - time_s[:-width], LEAST_TIME_S)
         rate = (torque_s[width:] - torque_s[:-width]) / span
         change, doubt = np.zeros(len(time_s)), np.full(len(time_s), np.inf)
@@ -88,8 +90,8 @@ def _sudden(
             mine = taken[float(np.sign(change[i]))]
             if not mine[i]:
                 mine[max(0, i - 2 * width) : i + 2 * width + 1] = True
-                found[i] = change[i]
-    return found
+                largest_change[i] = change[i]
+    return largest_change
 
 
 def _ways(places: list[int], rows: int, most: int) -> list[tuple[int, int]]:
@@ -107,10 +109,10 @@ def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
     """
     first = i
     while True:
-        found = _met_at(time_s, torque_Nm, i, way)
-        nearer = i + int(found >= time_s[min(i + 1, len(time_s) - 1)]) - int(found <= time_s[i - 1])
+        met_s = _met_at(time_s, torque_Nm, i, way)
+        nearer = i + int(met_s >= time_s[min(i + 1, len(time_s) - 1)]) - int(met_s <= time_s[i - 1])
         if abs(nearer - first) <= abs(i - first) or abs(nearer - first) > way // 2:
-            return found
+            return met_s
         i = nearer
 
 

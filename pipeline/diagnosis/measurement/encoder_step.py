@@ -45,3 +45,12 @@ def encoder_step(angle_arcsec: np.ndarray) -> float:
     # a difference is known to a reading's rounding, the step in it as often as the step goes into it
     unsure = OFF_A_STEP + ONE_READING_ARCSEC / step * (1 + steps)
     return step if np.mean(np.abs(steps - np.round(steps)) < unsure) > WHOLE_STEPS else 0.0
+
+
+def common_step(angle_arcsec: np.ndarray) -> float:
+    """Greatest step [arcsec] of which all differences of readings are whole multiples.
+
+    Of few readings none need be next to another one, and no two a step apart.
+    """
+    readings = np.unique(np.round(angle_arcsec / ONE_READING_ARCSEC).astype(np.int64))
+    return float(np.gcd.reduce(np.diff(readings), initial=0)) * ONE_READING_ARCSEC

@@ -58,12 +58,12 @@ def texts_of(path: Path, raw: bytes) -> tuple[FileText, ...]:
     for begin, what in BINARY:
         if raw.startswith(begin):
             raise MeasurementError(path, None, f"is {what}")
-    found = _decoded(path, raw)
-    text = found[0].text
+    decoded = _decoded(path, raw)
+    text = decoded[0].text
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
         raise MeasurementError(path, line, "holds a NUL byte; save the file as CSV in UTF-8")
-    return found
+    return decoded
 
 
 def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
@@ -79,18 +79,18 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
         return (FileText(raw.decode("utf-8"), "UTF-8"),)
     except UnicodeDecodeError:
         pass
-    found, unread = [], 0
+    texts, unread = [], 0
     for codec in CODE_PAGES:
         try:
-            found.append(FileText(raw.decode(codec), codec))
+            texts.append(FileText(raw.decode(codec), codec))
         except UnicodeDecodeError as error:
             unread = max(unread, error.start)
-    if not found:
+    if not texts:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
         known = joined(CODE_PAGES, "or")
         reason = f"byte {byte:#04x} is not text in UTF-8, {known}; save the file as UTF-8"
         raise MeasurementError(path, line, reason)
-    return tuple(found)
+    return tuple(texts)
 
 
 def _strict(path: Path, raw: bytes, codec: str, name: str) -> FileText:

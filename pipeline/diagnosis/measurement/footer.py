@@ -42,16 +42,16 @@ def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[
     have, or follows a phrase in a row that is not full.
     """
     at = [i for i, cell in enumerate(row) if cell.strip()]
-    found = [_kind(row[i].strip()) for i in at]
+    kinds = [_kind(row[i].strip()) for i in at]
     first = row[at[0]].strip()
-    if len(head) < 2 or found[0] is not _CellKind.WORDS or _WORD.search(first) is None:
+    if len(head) < 2 or kinds[0] is not _CellKind.WORDS or _WORD.search(first) is None:
         return False
-    if _CellKind.NEITHER in found:
+    if _CellKind.NEITHER in kinds:
         return False
     if head[0] in LABELS and len(row) > 1:
         known = {r[0].strip() for r in rows[:-1]}
-        return len(at) > 1 and _CellKind.NUMBER not in found and first not in known
-    numbers = found.count(_CellKind.NUMBER)
+        return len(at) > 1 and _CellKind.NUMBER not in kinds and first not in known
+    numbers = kinds.count(_CellKind.NUMBER)
     if not numbers:
         return True
     spaced = all(row[i][0].isspace() for i in at[1:]) and not any(
@@ -59,7 +59,7 @@ def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[
     )
     columns = sum(bool(name.strip()) for name in head)
     cut_off = _PHRASE.search(first) is not None and len(at) < columns
-    return 2 * numbers <= len(found) and (spaced or cut_off)
+    return 2 * numbers <= len(kinds) and (spaced or cut_off)
 
 
 def _kind(text: str) -> _CellKind:

@@ -82,8 +82,8 @@ def read_grid(path: Path) -> CellGrid:
 
 
 def _of_sheet(path: Path, raw: bytes) -> CellGrid:
-    found = [(n, r) for n, r in first_sheet(path, raw) if not _is_comment(r[0].strip())]
-    rows, numbers = [r for _, r in found], [n for n, _ in found]
+    cells = [(n, r) for n, r in first_sheet(path, raw) if not _is_comment(r[0].strip())]
+    rows, numbers = [r for _, r in cells], [n for n, _ in cells]
     _refuse_size(path, rows)
 
     head = head_of(len(rows), lambda i, _: [c.strip() for c in rows[i]], ("",))
@@ -94,7 +94,7 @@ def _of_sheet(path: Path, raw: bytes) -> CellGrid:
 class _Lines:
     """A text's lines that are neither empty nor comments, where they stand, and which is the head."""
 
-    found: FileText
+    text: FileText
     head: Head
     lines: list[str]
     numbers: list[int]
@@ -102,18 +102,18 @@ class _Lines:
 
 def _of_text(path: Path, raw: bytes) -> CellGrid:
     # of equals the first encoding is taken
-    read = max((_lines(path, t) for t in texts_of(path, raw)), key=lambda found: found.head.score)
+    read = max((_lines(path, t) for t in texts_of(path, raw)), key=lambda lines: lines.head.score)
     head, numbers = read.head, read.numbers
     _refuse_spaces(path, head, numbers)
     rows = _parsed(path, read.lines[head.at :], numbers[head.at :], head.separator)
-    return _grid(path, raw, read.found.encoding, head, rows, numbers[head.at :])
+    return _grid(path, raw, read.text.encoding, head, rows, numbers[head.at :])
 
 
-def _lines(path: Path, found: FileText) -> _Lines:
+def _lines(path: Path, file_text: FileText) -> _Lines:
     lines: list[str] = []
     numbers: list[int] = []
     comments: list[tuple[int, str]] = []
-    for number, row in enumerate(found.text.splitlines(), 1):
+    for number, row in enumerate(file_text.text.splitlines(), 1):
         bare = row.strip()
         if _is_comment(bare):
             if not lines:
@@ -129,7 +129,7 @@ def _lines(path: Path, found: FileText) -> _Lines:
             lines.insert(0, comments[above.at][1])
             numbers.insert(0, comments[above.at][0])
             head = Head(0, above.separator, above.cells, [], above.score)
-    return _Lines(found, head, lines, numbers)
+    return _Lines(file_text, head, lines, numbers)
 
 
 def _is_comment(text: str) -> bool:

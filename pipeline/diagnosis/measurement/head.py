@@ -91,8 +91,8 @@ def _is_data(head: Head, cells: list[str]) -> bool:
     measured = [
         cell
         for (name, unit), cell in zip(paired(head.cells, head.units), cells, strict=False)
-        if (found := column_name(with_unit(name, unit))) is not None
-        and found.quantity in QUANTITIES
+        if (column := column_name(with_unit(name, unit))) is not None
+        and column.quantity in QUANTITIES
     ]
     return any(measured) and all(
         not c or number_of(c, ".") is not None or number_of(c, ",") is not None or is_stamp(c)

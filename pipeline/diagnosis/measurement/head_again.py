@@ -16,14 +16,14 @@ def heads_again(
     head: Sequence[str], units: Sequence[str], rows: Sequence[Sequence[str]]
 ) -> tuple[int, ...]:
     """Places of the rows that repeat the head, with the lines of units and types that belong to it."""
-    found: list[int] = []
+    lines_again: list[int] = []
     under_head = True
     for i, row in enumerate(rows):
         again = row[0].strip() == head[0] and _same(row, head)
         under_head = again or (under_head and (_are_types(row) or _same(row, units)))
         if under_head:
-            found.append(i)
-    return tuple(found)
+            lines_again.append(i)
+    return tuple(lines_again)
 
 
 def _same(row: Sequence[str], known: Sequence[str]) -> bool:

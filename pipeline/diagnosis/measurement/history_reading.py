@@ -114,5 +114,5 @@ def _refuse_backward(
         if len(back):
             row = rows[back[0] + 1]
             was = values[rows[back[0]]]
-            found = f"{name} = {values[row]:g} after {was:g}"
-            raise table.refuse(int(row), f"{reason}: {found}{advice}")
+            times_said = f"{name} = {values[row]:g} after {was:g}"
+            raise table.refuse(int(row), f"{reason}: {times_said}{advice}")

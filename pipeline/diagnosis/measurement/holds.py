@@ -49,7 +49,7 @@ def holds(history: History) -> list[np.ndarray]:
     if fast == 0:
         return []
     span = HOLD_RANGE_SHARE * history.largest_Nm
-    found = []
+    hold_rows = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST_HOLD_ROWS:
             continue
@@ -79,8 +79,8 @@ def holds(history: History) -> list[np.ndarray]:
                     len(hold) <= CREST_ROWS * beside and _is_crest(torque, t, i, j + width, noise)
                 )
             ):
-                found.append(hold)
-    return found
+                hold_rows.append(hold)
+    return hold_rows
 
 
 def _joined(
@@ -100,20 +100,20 @@ def _joined(
     def level(first: int, last: int) -> float:
         return float(torque_Nm[max(first, 0) : last + 1].mean())
 
-    found: list[tuple[int, int]] = []
+    joined: list[tuple[int, int]] = []
     for i, j in runs:
-        if found and i - found[-1][1] <= width + BESIDE_ROWS:
-            a, b = found[-1]
+        if joined and i - joined[-1][1] <= width + BESIDE_ROWS:
+            a, b = joined[-1]
             stepped = abs(level(max(a, b - AROUND_ROWS), b) - level(i, min(j, i + AROUND_ROWS)))
             share = min(AROUND_ROWS, (j - a) // 2)  # rows at either end, not the same ones
             moved = abs(level(a, a + share) - level(j - share, j))
             passed = time_s[min(j, len(time_s) - 1)] - time_s[a]
             still = HOLD_RATE_SHARE * fast_Nm_per_s * passed + noise_Nm / 2
             if stepped < CLEAR_SIGMAS / 2 * noise_Nm and moved < still:
-                found[-1] = (a, j)
+                joined[-1] = (a, j)
                 continue
-        found.append((i, j))
-    return found
+        joined.append((i, j))
+    return joined
 
 
 def _stands(

@@ -84,7 +84,7 @@ def programme_edges(history: History) -> list[np.ndarray]:
     A corner beside a loss of rows lies in it: by the rows alone it is misplaced, and a way would reach over
     it. Losses side by side are a slower logger's rows.
     """
-    corners, found = corners_of(history), []
+    corners, edges = corners_of(history), []
     for unit, rows in enumerate(history.unit_slices):
         t = history.time_or_rows(rows)
         turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
@@ -92,8 +92,8 @@ def programme_edges(history: History) -> list[np.ndarray]:
         apart = np.diff(lost, prepend=-np.inf, append=np.inf) > 2 * AT_CORNER
         for after in lost[apart[:-1] & apart[1:]]:
             turned[np.abs(turned - after) <= AT_CORNER] = after
-        found.append(_stepped(np.unique([0, *turned, len(rows)]), history.torque_Nm[rows]))
-    return found
+        edges.append(_stepped(np.unique([0, *turned, len(rows)]), history.torque_Nm[rows]))
+    return edges
 
 
 def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
@@ -143,12 +143,12 @@ def known_ways(history: History) -> list[KnownWay]:
         ]
     elif refused > (1 - KNOWN_SHARE) * len(each):
         each = []
-    found = [own for own in each if own is not None]
+    known = [own for own in each if own is not None]
     left = np.ones(len(history), bool)
-    for way in found:
+    for way in known:
         left[way.rows] = False
     holds_alone = (_known(history, h, END_SIGMAS, most=0) for h in still(history) if left[h].all())
-    return found + [way for way in holds_alone if way is not None]
+    return known + [way for way in holds_alone if way is not None]
 
 
 def _ways(history: History) -> Iterator[np.ndarray]:

@@ -58,7 +58,7 @@ def turning_like(history: History, made: History) -> History:
 @once
 def lost_turns(history: History) -> LostTurns:
     """Where the straight ways on either side of a loss of rows, followed between them, meet."""
-    found: dict[int, float] = {}
+    turns: dict[int, float] = {}
     if history.time_s is not None and not history.exact:
         units = history.unit_slices
         lost = [losses(history.time_s[rows], history.torque_Nm[rows]) for rows in units]
@@ -70,8 +70,8 @@ def lost_turns(history: History) -> LostTurns:
                     back = rows[turn : min(last - AT_CORNER, turn + ROWS_BESIDE_LOSS)]
                     further = _further(history, way, back)
                     if further is not None:
-                        found[int(rows[turn - 1])] = further
-    return LostTurns(np.array([*found], int), np.array([*found.values()]))
+                        turns[int(rows[turn - 1])] = further
+    return LostTurns(np.array([*turns], int), np.array([*turns.values()]))
 
 
 def _further(history: History, before: np.ndarray, after: np.ndarray) -> float | None:

@@ -153,9 +153,9 @@ def estimated(
         if best is None or misfit < best[0]:
             best = misfit, Noise(float(amount[0]), float(amount[1]), rho)
     assert best is not None
-    found = best[1]
+    noise = best[1]
     floor = max(1e-6 * float(np.var(residual)), FINEST_ARCSEC**2)
-    return Noise(found.white + floor, found.coloured, found.memory)
+    return Noise(noise.white + floor, noise.coloured, noise.memory)
 
 
 def _autocovariance(

@@ -51,8 +51,8 @@ def evidence_of(texts: Sequence[str]) -> MarkEvidence:
     whole = "\n".join(texts)
 
     def first(mark: DecimalMark) -> int | None:
-        found = _DECIMAL[mark].search(whole) if mark in whole else None
-        return None if found is None else whole.count("\n", 0, found.end())
+        match = _DECIMAL[mark].search(whole) if mark in whole else None
+        return None if match is None else whole.count("\n", 0, match.end())
 
     marked = re.search(r"[.,]", whole)
     either = None if marked is None else whole.count("\n", 0, marked.start())
@@ -66,9 +66,9 @@ def numbers_of(texts: Sequence[str], mark: DecimalMark) -> tuple[np.ndarray, int
         whole = whole.replace(",", ".")
     if _CLEAN.fullmatch(whole):
         try:
-            found = np.array([float(t) for t in whole.split("\n")])
-            if np.isfinite(found).all():
-                return found, None
+            numbers = np.array([float(t) for t in whole.split("\n")])
+            if np.isfinite(numbers).all():
+                return numbers, None
         except ValueError:
             pass
     values = np.empty(len(texts))

@@ -38,7 +38,7 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
             others[i] = rows[same]
     if others:
         rising = np.gradient(less_jitter(history).torque_Nm) > 0
-        for i, found in others.items():
-            if (rising[found] == rising[i]).sum() >= 2:
+        for i, same_place in others.items():
+            if (rising[same_place] == rising[i]).sum() >= 2:
                 out[i] = False
     return out

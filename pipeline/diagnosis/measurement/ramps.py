@@ -90,8 +90,8 @@ def moving_rates(history: History, rows: np.ndarray) -> Rates | None:
         or np.ptp(history.time_s[rows]) == 0
     ):
         return None
-    found = rates_of(history, rows)
-    return replace(found, values=np.abs(found.values))
+    rates = rates_of(history, rows)
+    return replace(rates, values=np.abs(rates.values))
 
 
 def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
@@ -107,22 +107,22 @@ def cycle_rate(history: History, rows: np.ndarray) -> float:
     """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
     if len(rows) < 2 * FEWEST_HOLD_ROWS:
         return 0.0
-    found = rates_of(history, rows)
-    return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
+    rates = rates_of(history, rows)
+    return by_travel(np.abs(rates.values), rates.travel_Nm, 0.5)
 
 
 @once
 def ramp_rate(history: History) -> float:
     """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
-    found = []
+    ramps = []
     for rows in history.unit_slices:
         if (rates := moving_rates(history, rows)) is None:
             continue
         rate = rates.values[rates.travel_Nm > 0]  # most rows may lie in holds
         if len(rate):
             fast = np.quantile(rate, FAST_QUANTILE)
-            found.append(float(np.median(rate[rate > MOVING * fast])))
-    return float(np.median(found)) if found else 0.0
+            ramps.append(float(np.median(rate[rate > MOVING * fast])))
+    return float(np.median(ramps)) if ramps else 0.0
 
 
 def ramp_s(history: History) -> float:

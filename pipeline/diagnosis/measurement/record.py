@@ -186,13 +186,13 @@ def _sweep(as_read: MeasuredTable) -> Sweep:
     if np.any(table.numbers["torque_Nm"]):  # none at all is too little data, and no error
         _refuse_empty(table, "torque_Nm", TORQUE_Nm.low)
     _refuse_empty(table, "angle_arcsec", SMALLEST_ANGLE_arcsec)
-    found = history_of(table)
-    _refuse_full_turns(table, found.history.unit)
-    history, went_to = found.history, _went_to(as_read, table)
+    reading = history_of(table)
+    _refuse_full_turns(table, reading.history.unit)
+    history, went_to = reading.history, _went_to(as_read, table)
     if went_to is not None and history.time_s is None:  # rows are counted as the file has them
         history = replace(history, number=np.flatnonzero(went_to >= 0).astype(float))
     return Sweep(
-        table.path, history, table.numbers["angle_arcsec"], found.units, found.cycles,
+        table.path, history, table.numbers["angle_arcsec"], reading.units, reading.cycles,
         table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
         held_rows=int(held.sum()), went_to=went_to, lost=as_read.lost,
     )  # fmt: skip

@@ -14,5 +14,5 @@ def first_order(keep: np.ndarray | float, drive: np.ndarray) -> np.ndarray:
     band = np.ones((2, len(drive)), order="F")
     band[1, :-1] = np.negative(keep)
     right = np.array(drive, dtype=float, order="F").reshape(len(drive), -1, order="F")
-    found, _ = dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)
-    return np.asarray(found).reshape(drive.shape, order="F")
+    solution, _ = dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)
+    return np.asarray(solution).reshape(drive.shape, order="F")

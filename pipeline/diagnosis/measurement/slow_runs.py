@@ -61,9 +61,9 @@ def _longest(torque_Nm: np.ndarray, span_Nm: float) -> list[tuple[int, int]]:
                 lowest.popleft()
         runs.append((first, k + 1))
     taken = np.zeros(len(torque_Nm), bool)
-    found = []
+    longest = []
     for a, b in sorted(runs, key=lambda run: run[0] - run[1]):
         if not taken[a:b].any():
             taken[a:b] = True
-            found.append((a, b))
-    return found
+            longest.append((a, b))
+    return longest

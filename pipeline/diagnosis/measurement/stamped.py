@@ -51,13 +51,13 @@ def seconds_from(grid: CellGrid, column: ReadColumn, texts: list[str]) -> np.nda
     if form is not None:
         _refuse_other_form(grid, column, texts, form)
     in_minutes = is_short(texts[0]) and _in_minutes(grid, column, texts, form)
-    found, bad = seconds_of(texts, in_minutes)
+    seconds, bad = seconds_of(texts, in_minutes)
     if bad is not None:
         other = f'is not a date and time as "{texts[0][:CELL_CHARS]}" is'
         why = OUT_OF_RANGE if _shape(texts[bad]) == _shape(texts[0]) else other
         reason = f'{column.head} = "{texts[bad][:CELL_CHARS]}" {why}'
         raise MeasurementError(grid.path, grid.line[bad], reason)
-    return np.array(found)
+    return np.array(seconds)
 
 
 def _shape(text: str) -> str:

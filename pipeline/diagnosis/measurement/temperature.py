@@ -37,10 +37,10 @@ def temperature_without_noise(history: History) -> np.ndarray:
     """
     if history.temperature_C is None:
         raise ValueError("a gap that follows temperature needs a temperature")
-    found = np.array(history.temperature_C, float)
+    temperature = np.array(history.temperature_C, float)
     for rows in history.unit_slices:
-        found[rows] = _smoothed(found[rows], history.time_or_rows(rows))
-    return found
+        temperature[rows] = _smoothed(temperature[rows], history.time_or_rows(rows))
+    return temperature
 
 
 def _rounding(readings: np.ndarray) -> float:

@@ -128,12 +128,12 @@ def _blocks(
     """
     edges = np.union1d(np.flatnonzero(np.diff(near.astype(int)) != 0) + 1, at_corners)
     edges = edges[(edges > 0) & (edges < len(rows))]
-    found: list[np.ndarray] = []
+    blocks: list[np.ndarray] = []
     for part, inside in zip(np.split(rows, edges), np.split(near, edges), strict=True):
         if len(part):
             count = len(part) if inside[0] else max(1, len(part) // block)
-            found += np.array_split(part, count)
-    return found
+            blocks += np.array_split(part, count)
+    return blocks
 
 
 def _spared(labels: np.ndarray, units: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:

@@ -33,14 +33,14 @@ class TimeForm:
 
 def form_said(head: str) -> TimeForm | None:
     """The form, None where the head says none."""
-    found = _FORM.search(head)
-    if found is None:
+    match = _FORM.search(head)
+    if match is None:
         return None
-    part = (found["after_hour"] or found["after_minute"] or "").lower()
+    part = (match["after_hour"] or match["after_minute"] or "").lower()
     digits = _DIGITS.get(part, len(part))
-    if found["hour"] is None:
+    if match["hour"] is None:
         return TimeForm(MINUTES_SECONDS, digits)
-    return TimeForm(HOURS_MINUTES if found["second"] is None else ALL, digits)
+    return TimeForm(HOURS_MINUTES if match["second"] is None else ALL, digits)
 
 
 def without_form(head: str) -> str:

@@ -59,8 +59,8 @@ def is_short(text: str) -> bool:
 
 def short_are_minutes(texts: Sequence[str]) -> bool:
     """Whether only minutes and seconds explain some of the texts of two numbers."""
-    short = [found for t in texts if (found := SHORT.fullmatch(t))]
-    return any(found["part"] or int(found["minute"]) > LAST_HOUR for found in short)
+    short = [match for t in texts if (match := SHORT.fullmatch(t))]
+    return any(match["part"] or int(match["minute"]) > LAST_HOUR for match in short)
 
 
 def seconds_of(texts: Sequence[str], in_minutes: bool) -> tuple[list[float], int | None]:
@@ -70,15 +70,15 @@ def seconds_of(texts: Sequence[str], in_minutes: bool) -> tuple[list[float], int
     `in_minutes`: they are minutes and seconds.
     """
     read = _minutes if in_minutes else _dated if is_dated(texts[0]) else _time_of_day
-    found: list[float] = []
+    seconds: list[float] = []
     first: Moment | None = None
     for i, text in enumerate(texts):
         moment = read(text)
         if moment is None or (first is not None and moment.kind != first.kind):
-            return found, i
+            return seconds, i
         first = first or moment
-        found.append((moment.since - first.since) / timedelta(seconds=1))
-    return found, None
+        seconds.append((moment.since - first.since) / timedelta(seconds=1))
+    return seconds, None
 
 
 @dataclass(frozen=True)
@@ -94,16 +94,16 @@ def _dated(text: str) -> Moment | None:
         return _since_year_1(datetime.fromisoformat(text))  # fast, and most stamps are so
     except ValueError:
         pass
-    found = DATED.fullmatch(text)
-    if found is None:
+    match = DATED.fullmatch(text)
+    if match is None:
         return None
-    day, month, year = (found["dots"] or ".".join(reversed(found["iso"].split("-")))).split(".")
-    zone = (found["zone"] or "").strip()
+    day, month, year = (match["dots"] or ".".join(reversed(match["iso"].split("-")))).split(".")
+    zone = (match["zone"] or "").strip()
     try:
         midnight = datetime.fromisoformat(f"{year}-{month:0>2}-{day:0>2}T00:00{zone}")
     except ValueError:
         return None
-    after = _clock(found)
+    after = _clock(match)
     if after is None or after >= timedelta(days=1):
         return None
     return _since_year_1(midnight + after)
@@ -115,27 +115,27 @@ def _since_year_1(moment: datetime) -> Moment:
 
 
 def _time_of_day(text: str) -> Moment | None:
-    found = TIME.fullmatch(text)
-    after = found and _clock(found)
-    if found is None or after is None:
+    match = TIME.fullmatch(text)
+    after = match and _clock(match)
+    if match is None or after is None:
         return None
-    numbers = "hours and minutes" if found["second"] is None else "hours, minutes and seconds"
-    return Moment(after, f"{numbers} {found['zone'] or ''}")
+    numbers = "hours and minutes" if match["second"] is None else "hours, minutes and seconds"
+    return Moment(after, f"{numbers} {match['zone'] or ''}")
 
 
 def _minutes(text: str) -> Moment | None:
-    found = SHORT.fullmatch(text)
-    return found and Moment(_after(int(found["minute"]), found), "minutes and seconds")
+    match = SHORT.fullmatch(text)
+    return match and Moment(_after(int(match["minute"]), match), "minutes and seconds")
 
 
-def _clock(found: re.Match[str]) -> timedelta | None:
+def _clock(match: re.Match[str]) -> timedelta | None:
     """None where minutes or seconds are beyond 59."""
-    minutes, seconds = int(found["minute"] or 0), int(found["second"] or 0)
+    minutes, seconds = int(match["minute"] or 0), int(match["second"] or 0)
     if max(minutes, seconds) >= 60:
         return None
-    return _after(60 * int(found["hour"] or 0) + minutes, found)
+    return _after(60 * int(match["hour"] or 0) + minutes, match)
 
 
-def _after(minutes: int, found: re.Match[str]) -> timedelta:
-    part = float(f"0.{found['part'] or 0}")
-    return timedelta(minutes=minutes, seconds=int(found["second"] or 0) + part)
+def _after(minutes: int, match: re.Match[str]) -> timedelta:
+    part = float(f"0.{match['part'] or 0}")
+    return timedelta(minutes=minutes, seconds=int(match["second"] or 0) + part)

@@ -40,15 +40,15 @@ READING = ("reading", 0.0)
 
 def behind(reading: History, carried_Nm: np.ndarray) -> History:
     """The history with the torque that is left behind friction: its noise is the reading's, row by row."""
-    found = turning_like(reading, replace(reading, torque_Nm=reading.torque_Nm - carried_Nm))
-    found.memo[READING] = reading
-    return found
+    turned = turning_like(reading, replace(reading, torque_Nm=reading.torque_Nm - carried_Nm))
+    turned.memo[READING] = reading
+    return turned
 
 
 def reading_of(history: History) -> History:
     """The reading whose noise a history's torque has: its own, but for `behind`."""
-    found: History = history.memo.get(READING, history)
-    return found
+    reading: History = history.memo.get(READING, history)
+    return reading
 
 
 def jitter(history: History, width: int) -> np.ndarray:

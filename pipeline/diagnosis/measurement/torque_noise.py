@@ -89,10 +89,10 @@ def noise_of_usual_rows_Nm(history: History) -> np.ndarray:
     ]
     if max(each) < UNLIKE_RATIO * typical:
         each = [typical] * len(each)
-    found = none
+    noise_Nm = none
     for rows, noise in zip(cycles, each, strict=True):
-        found[rows] = min(noise, most)
-    return found
+        noise_Nm[rows] = min(noise, most)
+    return noise_Nm
 
 
 def _about_levels(torque_Nm: np.ndarray) -> float | None:

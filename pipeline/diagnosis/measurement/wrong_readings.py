@@ -54,7 +54,7 @@ def without_wrong(table: MeasuredTable) -> tuple[MeasuredTable, tuple[WrongReadi
     Of a wrong temperature the row stays, as friction remembers every torque: its temperature is then on the
     straight line between the readings before and after.
     """
-    found = []
+    corrections = []
     for name, wrong_in in (
         ("angle_arcsec", partial(_wrong, name="angle_arcsec", judge_of=_beside_torque)),
         ("torque_Nm", partial(_wrong, name="torque_Nm", judge_of=_beside_angle)),
@@ -62,14 +62,14 @@ def without_wrong(table: MeasuredTable) -> tuple[MeasuredTable, tuple[WrongReadi
     ):
         wrong = wrong_in(table)
         if wrong.any():
-            found.append(_told(table, name, wrong))
+            corrections.append(_told(table, name, wrong))
             table = table.rows(~wrong)
     if "temperature_C" in table.numbers:
         wrong = _wrong(table, "temperature_C", _beyond_gears)
         if wrong.any():
-            found.append(_told(table, "temperature_C", wrong))
+            corrections.append(_told(table, "temperature_C", wrong))
             table = _bridged(table, wrong)
-    return table, tuple(found)
+    return table, tuple(corrections)
 
 
 def _wrong(
@@ -84,11 +84,11 @@ def _wrong(
 
 def _spikes(table: MeasuredTable) -> np.ndarray:
     """(n,) torque readings that did not act on the gear; each unit separately."""
-    found = np.zeros(len(table), bool)
+    spike = np.zeros(len(table), bool)
     for rows in table.unit_rows():
         torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
-        found[rows] = torque_spikes(torque, angle)
-    return found
+        spike[rows] = torque_spikes(torque, angle)
+    return spike
 
 
 def _bridged(table: MeasuredTable, wrong: np.ndarray) -> MeasuredTable:

@@ -107,23 +107,24 @@ def read_doubt(
 
 
 def _covariance(rows: list[Any], refuse: Refuse) -> np.ndarray:
-    found = np.zeros((len(rows), len(rows)))
+    covariance = np.zeros((len(rows), len(rows)))
     for i, row in enumerate(rows):
         if not isinstance(row, list) or len(row) != i + 1 or not all(map(is_number, row)):
             many = "1 number" if i == 0 else f"{i + 1} numbers"
             raise refuse(
                 f"row {i + 1} of covariance in [doubt] must be {many}, each within ±{LARGEST_NUMBER:g}"
             )
-        found[i, : i + 1] = row
-    found += np.tril(found, -1).T
+        covariance[i, : i + 1] = row
+    covariance += np.tril(covariance, -1).T
     if (
-        len(found)
-        and np.linalg.eigvalsh(found)[0] < -ROUNDING_OF_SUMS * np.abs(np.diag(found)).max()
+        len(covariance)
+        and np.linalg.eigvalsh(covariance)[0]
+        < -ROUNDING_OF_SUMS * np.abs(np.diag(covariance)).max()
     ):
         raise refuse(
             "covariance in [doubt] must give every combination of parameters a variance above 0"
         )
-    return found
+    return covariance
 
 
 def _ends(values: list[Any], name: str, refuse: Refuse) -> Ends:

@@ -128,11 +128,11 @@ def _channel(
 ) -> np.ndarray:
     """The values as numbers (n,), as many as torques."""
     try:
-        found, rows = np.atleast_1d(np.asarray(values, float)), np.size(torque)
+        channel, rows = np.atleast_1d(np.asarray(values, float)), np.size(torque)
     except (TypeError, ValueError):
         raise ChannelError(name, "must hold numbers, one for each row") from None
-    if found.ndim != 1 or len(found) != rows:
-        raise ChannelError(name, f"has the shape {found.shape}, the torque has {rows} values")
-    if not np.isfinite(found).all():
+    if channel.ndim != 1 or len(channel) != rows:
+        raise ChannelError(name, f"has the shape {channel.shape}, the torque has {rows} values")
+    if not np.isfinite(channel).all():
         raise ChannelError(name, "holds a value that is not finite")
-    return found
+    return channel

@@ -168,10 +168,10 @@ def _provenance(
 
 
 def _texts(values: Iterable[object], where: str, refuse: Refuse) -> tuple[str, ...]:
-    found = tuple(values)
-    if not all(isinstance(v, str) for v in found):
+    texts = tuple(values)
+    if not all(isinstance(v, str) for v in texts):
         raise refuse(f"{where} must be texts")
-    return tuple(map(str, found))
+    return tuple(map(str, texts))
 
 
 def _bend(table: Mapping[str, Any], refuse: Refuse) -> Bend:
@@ -196,7 +196,7 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
     cause = known_causes().get(name)
     if cause is None:
         raise refuse(f'"{name}" is not a known cause; known are {", ".join(known_causes())}')
-    found = []
+    elements = []
     for element in tables(table["element"], "cause.element", refuse):
         check(element, ELEMENT, {}, f"element of {name}", refuse)
         amplitudes = element["amplitudes"]
@@ -213,7 +213,7 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
         fault = fault_of(cause, shape, len(amplitudes))
         if fault:
             raise refuse(f"a shape of {name} {fault}")
-        found.append(Element(dict(shape), tuple(float(a) for a in amplitudes)))
-    if not found:
+        elements.append(Element(dict(shape), tuple(float(a) for a in amplitudes)))
+    if not elements:
         raise refuse(f"cause {name} has no element")
-    return tuple(found)
+    return tuple(elements)

@@ -27,12 +27,12 @@ ABOUT = """\
 def model_text(
     model: ExtendedModel,
     provenance: Provenance,
-    found: Sequence[NamedCause] = (),
+    causes: Sequence[NamedCause] = (),
     gain: Gain | None = None,
     doubt: PredictionUncertainty | None = None,
     held_out: str = "",
 ) -> str:
-    """The file's text; `found` and `gain` are told beside the numbers that predict.
+    """The file's text; `causes` and `gain` are told beside the numbers that predict.
 
     `held_out` : in words, what the gain was measured on.
     """
@@ -48,7 +48,7 @@ def model_text(
     lines += doubt_lines(doubt) if doubt is not None else []
     for unit, zero in model.zeros_arcsec.items():
         lines += _unit(unit, zero, provenance, model.own.get(unit))
-    told = {c.id: c for c in found}
+    told = {c.id: c for c in causes}
     for cause_id, elements in model.elements.items():
         lines += _cause(cause_id, elements, told.get(cause_id))
     return "\n".join(lines).rstrip() + "\n"
@@ -127,18 +127,19 @@ def _unit(name: str, zero: float, origin: Provenance, own: tuple[float, float] |
     return [*lines, ""]
 
 
-def _cause(cause_id: str, elements: Sequence[Element], found: NamedCause | None) -> list[str]:
+def _cause(cause_id: str, elements: Sequence[Element], named_cause: NamedCause | None) -> list[str]:
     cause = known_causes()[cause_id]
     lines = ["[[cause]]", f"id = {quoted(cause_id)}", f"title = {quoted(cause.title)}"]
-    if found is not None:
+    if named_cause is not None:
         lines += [
-            f"magnitude = {number(found.magnitude)}",
-            f"magnitude_std = {number(found.magnitude_std)}   # one standard deviation",
-            f"unit = {quoted(found.unit)}" + ("   # a ratio" if found.unit == "1" else ""),
-            f"alternatives = [{', '.join(map(quoted, found.alternatives))}]",
+            f"magnitude = {number(named_cause.magnitude)}",
+            f"magnitude_std = {number(named_cause.magnitude_std)}   # one standard deviation",
+            f"unit = {quoted(named_cause.unit)}"
+            + ("   # a ratio" if named_cause.unit == "1" else ""),
+            f"alternatives = [{', '.join(map(quoted, named_cause.alternatives))}]",
         ]
-        if found.ahead_Nm:
-            std = number(found.ahead_std_Nm)
+        if named_cause.ahead_Nm:
+            std = number(named_cause.ahead_std_Nm)
             lines.append(
                 f"ahead_of_gap_std_Nm = {std}   # of the torque taken off T ahead of the teeth"
             )

@@ -62,8 +62,8 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
     torque = table.numbers["torque_Nm"]
     if (row := first_beyond(torque)) is not None:
         raise table.refuse(row, f"torque_Nm = {torque[row]:g} {BEYOND_GEARS}")
-    found = history_of(table)
-    history = _as_recorded(found, file, table)
+    reading = history_of(table)
+    history = _as_recorded(reading, file, table)
     if not file.provenance.time_recorded:  # there rows stood for seconds
         history = replace(history, time_s=np.arange(len(history), dtype=float))
     for cause_id, elements in file.model.elements.items():
@@ -72,23 +72,23 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
                 raise table.refuse(
                     None, f"column {channel} is missing; {cause_id} in {file.path.name} needs it"
                 )
-    angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
-    new = tuple(u for u in found.units if u not in file.model.zeros_arcsec)
+    angle = file.model.angle_of(history, reading.units) + _drifted_before(reading, file, history)
+    new = tuple(u for u in reading.units if u not in file.model.zeros_arcsec)
     if file.doubt is None:
         return Predicted(angle, None, new, (), table.read_as)
-    deviation = deviation_of(file.model, file.doubt, history, found.units)
+    deviation = deviation_of(file.model, file.doubt, history, reading.units)
     beyond = extrapolated(deviation, file.doubt.span, history, timed=file.provenance.time_recorded)
     return Predicted(angle, deviation.std_arcsec, new, tuple(beyond), table.read_as)
 
 
-def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:
+def _drifted_before(named: NamedHistory, file: ModelFile, history: History) -> np.ndarray:
     """(n,) how much more the reading has drifted than from the file's own first row."""
     more = np.zeros(len(history))
     elements = file.model.elements.get(CLOCK_COUNTS)
     if elements is None or history.time_s is None:
         return more
     drift = known_causes()[CLOCK_COUNTS]
-    for code, name in enumerate(found.units):
+    for code, name in enumerate(named.units):
         rows = np.flatnonzero(history.unit == code)
         first = file.provenance.first_time_s.get(name, np.inf)
         if history.time_s[rows[0]] > first:
@@ -100,19 +100,19 @@ def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> n
     return more
 
 
-def _as_recorded(found: NamedHistory, file: ModelFile, table: MeasuredTable) -> History:
+def _as_recorded(named: NamedHistory, file: ModelFile, table: MeasuredTable) -> History:
     """The history with its cycles counted as in the model's record."""
     if "cycle" not in table.numbers:
-        return found.history
-    cycle = found.history.cycle.copy()
-    for code, name in enumerate(found.units):
-        rows = found.history.unit == code
-        first = file.provenance.first_cycle.get(name, found.cycles[code][0])
-        before = int(first - found.cycles[code][0])
+        return named.history
+    cycle = named.history.cycle.copy()
+    for code, name in enumerate(named.units):
+        rows = named.history.unit == code
+        first = file.provenance.first_cycle.get(name, named.cycles[code][0])
+        before = int(first - named.cycles[code][0])
         if before > 0 and CYCLES_COUNT in file.model.elements:
             raise table.refuse(
                 int(np.flatnonzero(rows)[0]),
-                f"cycle = {found.cycles[code][0]:g} lies before the model's first, {first:g}",
+                f"cycle = {named.cycles[code][0]:g} lies before the model's first, {first:g}",
             )
         cycle[rows] += max(-before, 0)
-    return replace(found.history, cycle=cycle)
+    return replace(named.history, cycle=cycle)

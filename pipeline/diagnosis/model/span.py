@@ -70,17 +70,17 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     low, high = span.torque_Nm
     largest = max(abs(low), abs(high), LEAST_TORQUE_Nm)
     room = RANGE_SLACK * largest + 3 * torque_noise_Nm(history)
-    found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
+    distance = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
     if span.rate_Nm_per_s is not None and history.time_s is not None:
         measured_Nm_per_s = span.rate_Nm_per_s * (1 + RATE_SLACK)
-        found["torque_rate"] = np.log2(np.maximum(_row_rates(history) / measured_Nm_per_s, 1.0))
+        distance["torque_rate"] = np.log2(np.maximum(_row_rates(history) / measured_Nm_per_s, 1.0))
     if span.temperature_C is not None and history.temperature_C is not None:
         wide = max(float(np.ptp(span.temperature_C)), LEAST_RANGE_K)
         out = _outside(history.temperature_C, span.temperature_C, RANGE_SLACK * wide)
-        found["temperature_C"] = out / wide
+        distance["temperature_C"] = out / wide
     if span.input_angle_deg is not None and history.input_angle_deg is not None:
-        found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
-    return found
+        distance["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
+    return distance
 
 
 def times_slower(span: MeasuredSpan, history: History) -> np.ndarray:
@@ -141,9 +141,9 @@ def _row_rates(history: History) -> np.ndarray:
     """(n,) |torque rate| [N·m/s] of each row; 0 in holds, and in units without time."""
     out = np.zeros(len(history))
     for rows in history.unit_slices:
-        if (found := moving_rates(history, rows)) is None:
+        if (rates := moving_rates(history, rows)) is None:
             continue
-        own = np.where(found.travel_Nm > 0, found.values, 0.0)
+        own = np.where(rates.travel_Nm > 0, rates.values, 0.0)
         out[rows[: len(own)]] = own
         out[rows[len(own) :]] = own[-1]
     return out

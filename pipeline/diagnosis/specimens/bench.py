@@ -73,8 +73,8 @@ class Bench:
         width = relative_width or (BENCH_LOBE_WIDTH if lobed else BENCH_TORSION_WIDTH)
 
         def make() -> float:
-            found = lobes(own, True, width) if lobed else torsion(own, width)
-            return 1 / settled(found).K_Nm_per_rad
+            stiffness = lobes(own, True, width) if lobed else torsion(own, width)
+            return 1 / settled(stiffness).K_Nm_per_rad
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
                   "relative_width": width}  # fmt: skip
@@ -93,11 +93,11 @@ def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:
     ------
     MeasurementError : an override that makes no design; with the row's line.
     """
-    found = []
+    designs = []
     for i in range(len(specimens.specimen)):
         own = {key: float(values[i]) for key, values in specimens.overrides.items()}
         try:
-            found.append(with_values(design, own))
+            designs.append(with_values(design, own))
         except DesignError as fault:
             raise MeasurementError(specimens.path, int(specimens.line[i]), str(fault)) from None
-    return tuple(found)
+    return tuple(designs)

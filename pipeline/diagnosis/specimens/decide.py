@@ -65,13 +65,13 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
         return f.allowed and not f.unnamed and len(f.terms) <= len(best.terms)
 
     every = held_against(best, race.fits, race.null, may_replace)
-    found = [_named(race, best, held, torque_Nm) for held in every]
+    causes = [_named(race, best, held, torque_Nm) for held in every]
     decision = decided(
-        found,
+        causes,
         unexplained,
         named_rms=hypot(*(100 * _relative_rms(race, best, (c,)) for c in best.causes)),
         unnamed_rms=hypot(*(u.rms for u in unexplained)),
-        sure=all(map(is_significant, found)),
+        sure=all(map(is_significant, causes)),
     )
     rivals = tuple(f for held in every for f in held.alternatives.values())
     return SpecimenExplanation(decision, best, rivals)

@@ -76,14 +76,14 @@ def diagnose_specimens(
         design.solver.tolerance,
         design.uncertainty.youngs_modulus_pct / 100,
     )
-    found, explanation = explain(bench, data, specimens, design)
-    fe, chosen, decision = found.data.fe, explanation.chosen, explanation.decision
-    before, calibrated, after = _held_out(found.data, chosen)
+    specimen_race, explanation = explain(bench, data, specimens, design)
+    fe, chosen, decision = specimen_race.data.fe, explanation.chosen, explanation.decision
+    before, calibrated, after = _held_out(specimen_race.data, chosen)
     analysis = SpecimenAnalysis(
         specimens.specimen, parts, specimens.stiffness_Nm_per_rad, 1 / fe.total,
-        np.exp(-log_compliance(fe, (), found.null_fit.mean)),
+        np.exp(-log_compliance(fe, (), specimen_race.null_fit.mean)),
         np.exp(-log_compliance(fe, chosen.terms, chosen.mean)),
-        chosen.noise, after, before, found, chosen, full, guessed_by,
+        chosen.noise, after, before, specimen_race, chosen, full, guessed_by,
     )  # fmt: skip
     gain = None
     if n >= FEWEST_HELD_OUT:
@@ -104,20 +104,22 @@ def explain(
 ) -> tuple[SpecimenRace, SpecimenExplanation]:
     """The race, run again where a dimension was found: with FE at what was found."""
     one_material = design.material.shaft is None
-    found = race(data, specimen_parameters(data.fe, specimens.overrides, one_material))
-    decision = decide(found, design.load.torque_Nm)
+    specimen_race = race(data, specimen_parameters(data.fe, specimens.overrides, one_material))
+    decision = decide(specimen_race, design.load.torque_Nm)
     wrong = [
         (t.sensitivity.key, float(v))
         for t, v in zip(decision.chosen.terms, decision.chosen.mean[1:], strict=True)
         if t.sensitivity is not None and t.owner in decision.chosen.causes
     ]
     if not wrong:
-        return found, decision
+        return specimen_race, decision
     fe = data.fe
     for key, off in wrong:
         fe = refined(bench, fe, key, off)
-    found = race(replace(data, fe=fe), specimen_parameters(fe, specimens.overrides, one_material))
-    return found, decide(found, design.load.torque_Nm)
+    specimen_race = race(
+        replace(data, fe=fe), specimen_parameters(fe, specimens.overrides, one_material)
+    )
+    return specimen_race, decide(specimen_race, design.load.torque_Nm)
 
 
 def _insufficient(n: int) -> DiagnosisOutcome:

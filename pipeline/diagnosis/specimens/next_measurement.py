@@ -52,7 +52,7 @@ def _separating(
     """The dimension whose change drives the two nearest rivals furthest apart."""
     fits = (explanation.chosen, *explanation.rivals)
     bench.context.progress.note("the specimen that would tell the rivals apart")
-    found: list[tuple[float, str, float, float]] = []
+    candidates: list[tuple[float, str, float, float]] = []
     for name in PARTS_IN_ROW[part]:
         for key, nominal in lengths(design.part(name)).items():
             for factor in () if key.endswith(ANOTHER_GEAR) else DIMENSION_FACTORS:
@@ -62,13 +62,13 @@ def _separating(
                     apart = _apart(fits, _compliances(fits, bench, other, part)) / noise
                 except (DesignError, ComputationError):
                     continue
-                found.append((apart, key, value, nominal))
+                candidates.append((apart, key, value, nominal))
     causes = explanation.decision.causes
     others = dict.fromkeys(a for c in causes for a in c.alternatives)
     ids = (causes[0].id, *others)
-    if not found:
+    if not candidates:
         return NextMeasurement("fixture", "separate", ids)
-    apart, key, value, drawn = max(found)
+    apart, key, value, drawn = max(candidates)
     return NextMeasurement(key, "separate", ids, separation=apart, dimension_mm=(value, drawn))
 
 

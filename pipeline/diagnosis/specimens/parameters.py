@@ -87,12 +87,12 @@ def specimen_parameters(
 ) -> list[SpecimenParameter]:
     """All hypotheses for some specimens."""
     even = -float(np.log(CAUSE_KINDS))
-    found = [
+    parameters = [
         SpecimenParameter(SERIES, "series", SERIES_SPREAD * float(np.median(fe.total)), even, True)
     ]
     parts = tuple(p for p, c in (("flexspline", fe.flexspline), ("shaft", fe.shaft)) if c.any())
     groups = [parts] if one_material or len(parts) == 1 else [parts, ("flexspline",), ("shaft",)]
-    found += [
+    parameters += [
         SpecimenParameter(
             YOUNGS_MODULUS, "modulus", MODULUS_SPREAD, even - float(np.log(len(groups))), parts=g
         )
@@ -100,7 +100,7 @@ def specimen_parameters(
     ]
     if (np.abs(fe.lobes_share) > LEAST_LOBES_SHARE).any():
         side = -1.0 if fe.base_zone else 1.0
-        found += [
+        parameters += [
             SpecimenParameter(
                 LOAD_ZONE, "zone", spread, even + float(np.log(weight)), centre=side * centre
             )
@@ -109,11 +109,11 @@ def specimen_parameters(
     each = -0.5 * float(np.log(max(len(fe.sensitivities), 1)))
     for s in fe.sensitivities:
         for factor, within in ((WRONG_TOLERANCES, False), (TOLERANCE_SHARE, True)):
-            found.append(SpecimenParameter(
+            parameters.append(SpecimenParameter(
                 GEOMETRY + s.key, "geometry", factor * s.tolerance_mm, even + each,
                 sensitivity=s, within=within,
             ))  # fmt: skip
-    return found + _columns(len(fe.total), overrides)
+    return parameters + _columns(len(fe.total), overrides)
 
 
 def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[SpecimenParameter]:

@@ -72,7 +72,7 @@ def sensitivities(
     if not mine:
         return []
     each = [lengths(d.part(part)) for d in mine]
-    found = []
+    of_values = []
     for key in each[0]:
         if not all(key in e for e in each) or (keys is not None and key not in keys):
             continue
@@ -109,8 +109,8 @@ def sensitivities(
             np.abs(s.log_change(-tolerance)).max(),
         )
         if keys is not None or change > LEAST_CHANGE:
-            found.append(s)
-    return found
+            of_values.append(s)
+    return of_values
 
 
 def drawn_through(

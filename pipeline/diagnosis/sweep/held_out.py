@@ -168,5 +168,5 @@ def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:
     def named(term: Regressor) -> bool:
         return term.cause is not None and term.cause.id in causes
 
-    found = with_tuned_shapes(learnt, named)
-    return fit_regressors(found.evidence, found.top.terms)
+    search = with_tuned_shapes(learnt, named)
+    return fit_regressors(search.evidence, search.top.terms)

@@ -120,7 +120,7 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
     its zero would not be known.
     """
     cycles = history.cycle_slices
-    found: list[Split] = []
+    splits: list[Split] = []
     for kind, values in _values(history, cycles, timed):
         levels = _levels(np.log(values) if kind.by_ratio else values, kind.step)
         last = int(levels.max())
@@ -130,10 +130,10 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
             rows[np.concatenate([cycles[k] for k in np.flatnonzero(chosen)])] = True
             for unit in history.unit_slices:
                 rows[unit] &= not rows[unit].all()
-            if rows.any() and not any(np.array_equal(rows, other.rows) for other in found):
+            if rows.any() and not any(np.array_equal(rows, other.rows) for other in splits):
                 ends = (float(values[chosen].min()), float(values[chosen].max()))
-                found.append(Split(LeftOut(kind.channel, ends, level=True), rows))
-    return found
+                splits.append(Split(LeftOut(kind.channel, ends, level=True), rows))
+    return splits
 
 
 def _values(

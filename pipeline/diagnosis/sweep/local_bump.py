@@ -83,25 +83,25 @@ def local_bumps(history: History, angle_arcsec: np.ndarray, kept: np.ndarray) ->
     x, y = history.torque_Nm[rows] / largest, angle_arcsec[rows]
     basis = orthonormal(beside_bumps(history, rows))
     left = y - basis @ (basis.T @ y)
-    found: list[Bump] = []  # in shares of the largest torque
+    bumps: list[Bump] = []  # in shares of the largest torque
     gains: list[float] = []
     for _ in range(MOST_BUMPS):
-        columns = np.column_stack([b.of(x) for b in found]) if found else np.empty((len(x), 0))
+        columns = np.column_stack([b.of(x) for b in bumps]) if bumps else np.empty((len(x), 0))
         now = np.hstack([basis, orthonormal(less(basis, columns))])
         best = _best(x, y, now)
         if best is None:
             break
         place, width, gain = best
         new = Bump(place, width, width, 2.0, place)
-        near = _part_of(new, gain, found, gains)
+        near = _part_of(new, gain, bumps, gains)
         rest = y - now @ (now.T @ y)
         clear = gain > CLEAR_GAIN * max(float(rest @ rest) - gain, 0.0) / len(rest)
         if near is None and clear:
-            found = _tuned(x, left, basis, [*found, new])
+            bumps = _tuned(x, left, basis, [*bumps, new])
         else:
-            found.append(new if near is None else replace(new, near_Nm=near))
+            bumps.append(new if near is None else replace(new, near_Nm=near))
         gains.append(gain)
-    return tuple(_in_Nm(b, largest) for b in found)
+    return tuple(_in_Nm(b, largest) for b in bumps)
 
 
 def _in_Nm(bump: Bump, largest_Nm: float) -> Bump:
@@ -113,9 +113,9 @@ def _in_Nm(bump: Bump, largest_Nm: float) -> Bump:
     return Bump(place, below, above, bump.power, near)
 
 
-def _part_of(new: Bump, gain: float, found: Sequence[Bump], gains: Sequence[float]) -> float | None:
+def _part_of(new: Bump, gain: float, bumps: Sequence[Bump], gains: Sequence[float]) -> float | None:
     """Where the bump is on whose flank a new one explains so little that it is a part of that one."""
-    for other, explained in zip(found, gains, strict=True):
+    for other, explained in zip(bumps, gains, strict=True):
         reach = new.width_Nm + max(other.width_Nm, other.above_Nm)
         beside = abs(new.place_Nm - other.place_Nm) < CLEAR_WIDTHS * reach
         if beside and gain < PART_SHARE * explained:
@@ -177,11 +177,11 @@ def _tuned(x: np.ndarray, left: np.ndarray, basis: np.ndarray, bumps: Sequence[B
         return np.asarray(left - columns @ heights)
 
     inside = np.clip(start, np.array(low) + INSIDE, np.array(high) - INSIDE)
-    found = least_squares(
+    solution = least_squares(
         misfit, inside, bounds=(low, high), x_scale=[0.01, 0.1, 0.1, 0.2] * len(bumps),
         max_nfev=TUNING_ROUNDS,
     )  # fmt: skip
-    return bumps_of(found.x)
+    return bumps_of(solution.x)
 
 
 def _best(
@@ -198,7 +198,7 @@ def _best(
     of_left = np.bincount(at, left)
     of_basis = np.column_stack([np.bincount(at, column) for column in basis.T])
     best: float = 0.0
-    found: tuple[float, float, float] | None = None
+    best_bump: tuple[float, float, float] | None = None
     for width in WIDTH_SHARES:
         places = np.arange(CLEAR_WIDTHS * width, 1 - CLEAR_WIDTHS * width, PLACE_SHARE)
         beside = np.arange(0, AT_GAP_WIDTHS * width, PLACE_SHARE)
@@ -210,5 +210,5 @@ def _best(
         gain = np.where(told, (height @ of_left) ** 2 / np.where(told, new, 1.0), 0.0)
         if gain.max() > best:
             best = float(gain.max())
-            found = float(places[gain.argmax()]), width, best
-    return found
+            best_bump = float(places[gain.argmax()]), width, best
+    return best_bump

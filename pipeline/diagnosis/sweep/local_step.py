@@ -55,7 +55,7 @@ def curve_steps(
     places = np.arange(NEAREST_SHARE, FURTHEST_SHARE, PLACE_SHARE)
     tried = [CurveStep(p, w) for w in WIDTH_SHARES for p in (*-places, *places)]
     columns = less(basis, np.column_stack([step.of(x) for step in tried]))
-    found: list[CurveStep] = []
+    steps: list[CurveStep] = []
     for _ in range(MOST_STEPS):
         own = (columns**2).sum(axis=0)
         told = own > LEAST_ROWS
@@ -63,7 +63,7 @@ def curve_steps(
         best = int(gain.argmax())
         if not gain[best] > 0:
             break
-        found.append(CurveStep(tried[best].place_Nm * largest, tried[best].width_Nm * largest))
+        steps.append(CurveStep(tried[best].place_Nm * largest, tried[best].width_Nm * largest))
         now = columns[:, [best]] / np.sqrt(own[best])
         left, columns = less(now, left), less(now, columns)
-    return tuple(found)
+    return tuple(steps)

@@ -33,6 +33,7 @@ from flexspline.pipeline.diagnosis.sweep.identification.rate_independence import
     loop_tells,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.magnitudes import magnitudes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.rounding_error import RoundingError
 from flexspline.pipeline.diagnosis.sweep.magnitudes.shared_size import shared_std
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rig_faults.torque_zero_drift import zero_moves
@@ -52,11 +53,13 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     evidence = identified.search.evidence
     sets = [(c.named(evidence), c.score) for c in explanations(evidence, identified.search)]
     magnitude, std = magnitudes(identified)
+    rounding = RoundingError.of(explained.prepared, identified.fit)
+    slopes = identified.fit.magnitude_slopes()
     timed = explained.prepared.sweep.history.time_s is not None
     told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
     units = explained.prepared.sweep.units
-    found = []
+    named = []
     for c in identified.named:
         unweighed = tuple(_other_rivals(explained, c, told, timed))
         shares = explained.shares.get(c)
@@ -67,8 +70,10 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
-        std[c] = hypot(std[c], shared_std(identified, c, magnitude, rivals))
-        found.append(
+        std[c] = hypot(
+            std[c], shared_std(identified, c, magnitude, rivals), rounding.std(slopes[c])
+        )
+        named.append(
             NamedCause(
                 c,
                 probability=beside_unweighed(chance, unweighed),
@@ -88,7 +93,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()[OFFSET]
         slope = identified.fit.measured_rig().compliance
-        found.append(
+        named.append(
             NamedCause(
                 offset.id,
                 probability=probability_of_gain(explained.offset_nats),
@@ -102,7 +107,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
                 rms_arcsec=abs(slope * explained.offset_Nm),
             )
         )
-    return tuple(found)
+    return tuple(named)
 
 
 def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool) -> Iterator[str]:

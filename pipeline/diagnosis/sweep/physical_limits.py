@@ -75,5 +75,5 @@ def _gap(
     changed = next((c for c in causes if c.id == CLEARANCE), None)
     if changed is not None:
         return prediction.gap_arcsec + changed.magnitude, changed.magnitude_std
-    found = fit.calibration.gap_arcsec
-    return found.value, found.std
+    gap = fit.calibration.gap_arcsec
+    return gap.value, gap.std

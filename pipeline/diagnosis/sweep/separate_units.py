@@ -101,14 +101,14 @@ def _differing(explained: ExplainedSweep) -> set[str]:
     """Causes that differ between units, and a gap of one unit that is far from the simulated one or crossed
     elsewhere."""
     prepared, fit = explained.prepared, explained.identified.fit
-    found = {cause for cause, shares in explained.shares.items() if shares.differ}
+    differing = {cause for cause, shares in explained.shares.items() if shares.differ}
     if any(fit.calibration_of(u).far_off(prepared.prediction) for u in range(fit.units)):
-        found.add(CLEARANCE)
+        differing.add(CLEARANCE)
     own = [rows[~prepared.outlier[rows]] for rows in prepared.rig.history.unit_slices]
     crossings = [crossing_of(prepared, fit, rows) for rows in own]
     if any(seen is not None and is_shifted(seen, prepared) for seen in crossings):
-        found.add(OFFSET)
-    return found
+        differing.add(OFFSET)
+    return differing
 
 
 def _of_all(judged: Mapping[str, Decision]) -> tuple[NamedCause, ...]:
@@ -117,8 +117,8 @@ def _of_all(judged: Mapping[str, Decision]) -> tuple[NamedCause, ...]:
     for name, own in judged.items():
         for c in own.causes:
             of_cause.setdefault(c.id, {})[name] = c
-    found = [c for units in of_cause.values() for c in _by_size(units, len(judged))]
-    return tuple(sorted(found, key=lambda c: -c.rms_arcsec))
+    named = [c for units in of_cause.values() for c in _by_size(units, len(judged))]
+    return tuple(sorted(named, key=lambda c: -c.rms_arcsec))
 
 
 def _by_size(units: Mapping[str, NamedCause], count: int) -> Iterator[NamedCause]:

@@ -120,10 +120,10 @@ def sweep_size(
         angle = angle - bend.at(h.torque_Nm)
     good = np.ones(len(angle), bool)
     for _ in range(2):
-        found = _line(h.rows(good), angle[good])
-        if found is None:
+        line = _line(h.rows(good), angle[good])
+        if line is None:
             return None
-        (c, g), cov, residual = found
+        (c, g), cov, residual = line
         scale = robust_std(residual)
         good[good] = ~isolated_outliers(residual, h.rows(good), scale + ROUNDING_ARCSEC)
     extent = float(np.ptp(h.torque_Nm))

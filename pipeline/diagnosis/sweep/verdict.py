@@ -131,15 +131,15 @@ def _misread(
     prepared: PreparedSweep, explained: ExplainedSweep, decision: Decision
 ) -> BackwardLoop | LateAngle | DraggedCrossing | None:
     """A reading that comes late, or drag, where something was found that may be it."""
-    found = None
+    backward = None
     # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
     # curve's, a few loads of a gear that does nothing seem to
     if decision.unexplained:
-        found = backward_of(prepared, explained)  # rig_faults/backward_loops.py
-    if found is None and (decision.causes or decision.unexplained):
+        backward = backward_of(prepared, explained)  # rig_faults/backward_loops.py
+    if backward is None and (decision.causes or decision.unexplained):
         late = late_angle_of(prepared, explained)  # rig_faults/late_angle.py
         if late is not None:
             return late
         causes = decision.causes
         return dragged_crossing_of(prepared, explained, causes)  # rig_faults/dragged_crossing.py
-    return found
+    return backward

@@ -74,7 +74,7 @@ def central_curve(
     edges = np.linspace(prepared.band_Nm, float(size.max()), BINS + 1)
     number = np.clip(np.digitize(size, edges) - 1, 0, BINS - 1)
     rising = direction_of_loading(history) > 0
-    found = []
+    points = []
     wanted = np.unique(history.cycle) if cycles is None else cycles
     for cycle in wanted:
         rows = prepared.kept & (history.cycle == cycle)
@@ -83,8 +83,8 @@ def central_curve(
                       for b in range(BINS)])
             for sign in (1, -1)
         ]  # fmt: skip
-        found.append((halves[0] - halves[1]) / 2)
-    each = np.array(found)
+        points.append((halves[0] - halves[1]) / 2)
+    each = np.array(points)
     seen = np.isfinite(each).sum(axis=0)
     there = seen > 0
     if there.sum() < 3:

@@ -109,18 +109,18 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearId
     base = float(((off / curve.std_arcsec) ** 2).sum())
     each = (fitted(one, chain, curve, nominal, start) for one in inputs.values())
     # an input that moves nothing on this gear has no value
-    found = sorted((f for f in each if f.std < inf), key=lambda one: one.chi_square)
-    plain = GearIdentification("consistent", rms(off), base, len(off), tuple(found))
+    by_misfit = sorted((f for f in each if f.std < inf), key=lambda one: one.chi_square)
+    plain = GearIdentification("consistent", rms(off), base, len(off), tuple(by_misfit))
     if _fits(base, len(off)):
         return plain
-    if not found:
+    if not by_misfit:
         return replace(plain, outcome="unknown")
-    best = found[0]
+    best = by_misfit[0]
     if not _fits(best.chi_square, len(off) - 1):
         return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)
     rivals = [
         f
-        for f in found[1:]
+        for f in by_misfit[1:]
         if f.chi_square < best.chi_square + RIVAL_CHI_SQUARE and f.value != f.nominal
     ]
     one = inputs[best.key]

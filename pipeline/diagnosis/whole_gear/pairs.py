@@ -73,11 +73,11 @@ def fitted_pairs(
         for both in combinations([one for one in inputs if one.key in slopes], 2)
     ]
     possible.sort(key=lambda each: _bounded(each[0], _nominal(each[0]), each[1], off, std)[1])
-    found = [
+    pairs = [
         _followed(both, chain, curve, (nominal, slope), (wanted, std))
         for both, slope in possible[:PAIRS_FOLLOWED]
     ]
-    return sorted(found, key=lambda each: each.chi_square)
+    return sorted(pairs, key=lambda each: each.chi_square)
 
 
 def _followed(
@@ -122,8 +122,8 @@ def _bounded(
     ends = np.array([(one.low, one.high) for one in both])
     room = (ends - at[:, None]) / unit[:, None]
     room[:, 1] = np.maximum(room[:, 1], room[:, 0] + LEAST_ROOM)
-    found = lsq_linear(slope * unit / std[:, None], off / std, bounds=(room[:, 0], room[:, 1]))
-    return found.x * unit, 2 * float(found.cost)
+    solution = lsq_linear(slope * unit / std[:, None], off / std, bounds=(room[:, 0], room[:, 1]))
+    return solution.x * unit, 2 * float(solution.cost)
 
 
 def _nominal(both: tuple[GearInput, GearInput]) -> np.ndarray:

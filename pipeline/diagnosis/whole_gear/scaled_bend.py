@@ -52,8 +52,8 @@ class _Record:
         size[size == 0] = 1.0
         least = np.full(columns.shape[1], -np.inf)
         least[: len(curves) + self.wind_ups.shape[1]] = 0.0
-        found = lsq_linear(columns / size, self.angle - taken, (least, np.inf), method="bvls")
-        return _Fitted((found.x / size)[: len(curves)], 2 * float(found.cost))
+        solution = lsq_linear(columns / size, self.angle - taken, (least, np.inf), method="bvls")
+        return _Fitted((solution.x / size)[: len(curves)], 2 * float(solution.cost))
 
 
 @dataclass(frozen=True)

@@ -69,13 +69,13 @@ class _AheadSearch:
 
     def friction(self, offset_Nm: float = 0.0) -> tuple[int, float]:
         """The best friction of the first ones beside a shifted reading, and its misfit."""
-        found = [self.misfit(carried + offset_Nm) for carried in self.carried_Nm.T]
-        return _least(found)
+        misfits = [self.misfit(carried + offset_Nm) for carried in self.carried_Nm.T]
+        return _least(misfits)
 
     def offset(self, carried_Nm: np.ndarray | float) -> tuple[int, float]:
         """The best shifted reading beside a friction, and its misfit."""
-        found = [self.misfit(carried_Nm + offset) for offset in self.offsets_Nm]
-        return _least(found)
+        misfits = [self.misfit(carried_Nm + offset) for offset in self.offsets_Nm]
+        return _least(misfits)
 
     def both(self, friction: int, offset: int) -> tuple[int, int, float]:
         """The best of each beside the best of the other, begun with either, and their misfit."""

@@ -105,10 +105,10 @@ def changing_heights(history: History) -> np.ndarray:
 
     A gap that wears or warms has another step in each cycle, and none of one height fits.
     """
-    found = [history.cycle.astype(float)]
+    changing = [history.cycle.astype(float)]
     if history.temperature_C is not None:
-        found.append(history.temperature_C)
-    columns = np.column_stack(found)
+        changing.append(history.temperature_C)
+    columns = np.column_stack(changing)
     return to_one(columns - columns.mean(axis=0), CONSTANT_SHARE)
 
 
@@ -143,11 +143,11 @@ class StepFit:
         weight = np.ones(len(rows))
         left = angle_arcsec
         for _ in range(2):
-            found = weighted_fit(basis, angle_arcsec, weight)
-            left = angle_arcsec - basis @ found
+            coefficients = weighted_fit(basis, angle_arcsec, weight)
+            left = angle_arcsec - basis @ coefficients
             scale = robust_std(left) + ROUNDING_ARCSEC
             weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
-        if found[-1] < least * self.gap_arcsec:
+        if coefficients[-1] < least * self.gap_arcsec:
             return np.inf
         return float(np.mean(np.minimum(np.abs(left), 2 * self.gap_arcsec) ** 2)) * len(looked)
 

@@ -146,7 +146,7 @@ class Search:
         """Sets with one term more: of each set the best few of each owner."""
         if not len(self._joining.members):
             return []
-        found: list[Candidate] = []
+        grown: list[Candidate] = []
         for c, (gain, score) in zip(beam, self._scored(beam), strict=True):
             most = 2 if c.terms else len(score)
             best = self._joining.best_of_owners(score, most)
@@ -156,13 +156,13 @@ class Search:
                 key = frozenset((*c.terms, term))
                 if term not in c.terms and key not in self._seen:
                     self._seen.add(key)
-                    found.append(Candidate(
+                    grown.append(Candidate(
                         (*c.terms, term), c.owners | {self._owner[term]},
                         c.log_evidence + nats, c.score + more,
                     ))  # fmt: skip
-        for f in found:
+        for f in grown:
             self._remember(f)
-        return found
+        return grown
 
     def _scored(self, beam: Sequence[Candidate]) -> list[tuple[np.ndarray, np.ndarray]]:
         """Of each set, what every term that may join would add (M,) to its evidence and to its score."""

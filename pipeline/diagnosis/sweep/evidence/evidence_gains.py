@@ -113,8 +113,8 @@ class RegressorPool:
 
     def gains(self, evidence: GaussianEvidence, sets: ColumnSets) -> tuple[np.ndarray, np.ndarray]:
         """Evidence (B, M) that each member adds to each set, and whether all signs stay physical."""
-        found = [group.gains(evidence, sets) for group in self.groups]
-        gain, valid = zip(*found, strict=True)
+        gains_of_groups = [group.gains(evidence, sets) for group in self.groups]
+        gain, valid = zip(*gains_of_groups, strict=True)
         return np.concatenate(gain, axis=1), np.concatenate(valid, axis=1)
 
     def barred(self, present: Collection[str], shut: Collection[str]) -> np.ndarray:

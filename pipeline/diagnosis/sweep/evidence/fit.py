@@ -57,12 +57,12 @@ class SweepFit:
         """Elements of each cause, by id."""
         posterior = self.posterior if mean is None else replace(self.posterior, mean=mean)
         ahead = self.evidence.columns.ahead
-        found: dict[str, tuple[Element, ...]] = {FRICTION: (ahead.element,)} if ahead else {}
+        by_cause: dict[str, tuple[Element, ...]] = {FRICTION: (ahead.element,)} if ahead else {}
         for term, amplitudes in self._amplitudes(posterior):
             if term.cause is not None:
                 element = Element(term.shape, tuple(float(a) for a in amplitudes))
-                found[term.cause.id] = (*found.get(term.cause.id, ()), element)
-        return found
+                by_cause[term.cause.id] = (*by_cause.get(term.cause.id, ()), element)
+        return by_cause
 
     def _amplitudes(self, posterior: Posterior) -> Iterable[tuple[Regressor, np.ndarray]]:
         """Each term of the set with its amplitudes by a posterior of it."""
@@ -115,15 +115,15 @@ class SweepFit:
     def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
         """The magnitude of each named cause, as docs/contract.md defines it."""
         rig, elements = self.measured_rig(mean), self.elements(mean)
-        found = {c: known_causes()[c].magnitude(e, rig) for c, e in elements.items()}
+        sizes = {c: known_causes()[c].magnitude(e, rig) for c, e in elements.items()}
         ahead = self.evidence.columns.ahead
         if ahead is not None and HARDENING in elements:  # at T = 0 the teeth feel ± its torque
             ends = ahead.torque_Nm * np.array([-1.0, 1.0])
             twist = known_causes()[HARDENING].angle_arcsec(
                 elements[HARDENING], History.course(ends)
             )
-            found[FRICTION] += float(twist[1] - twist[0])
-        return found
+            sizes[FRICTION] += float(twist[1] - twist[0])
+        return sizes
 
     def widest_loop_arcsec(self) -> float:
         """Of friction's closed loop at the largest amplitude."""

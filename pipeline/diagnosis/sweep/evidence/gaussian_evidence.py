@@ -125,9 +125,9 @@ def with_shapes(
         blocks.append(block)
     if not more:
         return old
-    found = with_terms(old, more, blocks)
+    wider = with_terms(old, more, blocks)
     tuned_from = len(old.terms) if old.columns.tuned_from is None else old.columns.tuned_from
-    return replace(found, columns=replace(found.columns, tuned_from=tuned_from))
+    return replace(wider, columns=replace(wider.columns, tuned_from=tuned_from))
 
 
 def with_terms(

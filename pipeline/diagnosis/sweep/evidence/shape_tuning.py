@@ -58,10 +58,10 @@ def tuned(evidence: GaussianEvidence, chosen: Sequence[int]) -> Tuned:
                 b if n == s else _block(evidence, t, n)
                 for t, n, s, b in zip(terms, new, shapes, blocks, strict=True)
             ]
-            found = _value(evidence, trial)
-            if found > value:
-                gained = found - value
-                shapes, blocks, value, moved = new, trial, found, True
+            tried_value = _value(evidence, trial)
+            if tried_value > value:
+                gained = tried_value - value
+                shapes, blocks, value, moved = new, trial, tried_value, True
                 break
         if not moved or gained < ENOUGH_NATS:
             break
@@ -107,8 +107,8 @@ def _step(
     x, prior = evidence.base_with(blocks)
     amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
     whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
-    found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
-    return np.clip(found[-len(keys) :], -LONGEST_LOG_STEP, LONGEST_LOG_STEP)
+    solution = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
+    return np.clip(solution[-len(keys) :], -LONGEST_LOG_STEP, LONGEST_LOG_STEP)
 
 
 def columns_with_shapes(

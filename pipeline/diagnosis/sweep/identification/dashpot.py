@@ -111,9 +111,14 @@ def _after(
 ) -> np.ndarray:
     """(m,) e of e − e₀ − move + flow·|e/E|^root·sign e = 0 by Newton's method: the left side rises with e."""
     driven = carried + move
-    found = np.clip(driven, -np.maximum(np.abs(carried), most), np.maximum(np.abs(carried), most))
+    carried_after = np.clip(
+        driven, -np.maximum(np.abs(carried), most), np.maximum(np.abs(carried), most)
+    )
     for _ in range(NEWTON_STEPS):
-        share = np.abs(found) / most
+        share = np.abs(carried_after) / most
         slope = 1 + flow * root / most * share ** (root - 1)
-        found = found - (found - driven + flow * np.sign(found) * share**root) / slope
-    return found
+        carried_after = (
+            carried_after
+            - (carried_after - driven + flow * np.sign(carried_after) * share**root) / slope
+        )
+    return carried_after

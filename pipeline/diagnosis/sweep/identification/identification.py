@@ -111,9 +111,9 @@ def identify(search: Search, beside: bool = False) -> Identification:
         if cause in ahead:  # no other cause changes where the gap is crossed each way
             rivals[cause] = ()
             continue
-        rivals[cause], found = rivals_of(evidence, best, cause)
-        if found is not None:
-            rival_sets[cause] = found
+        rivals[cause], rival_set = rivals_of(evidence, best, cause)
+        if rival_set is not None:
+            rival_sets[cause] = rival_set
     return Identification(search, best, fit, doubt, tuple(named), rms, rivals, rival_sets, nats)
 
 
@@ -194,6 +194,6 @@ def _best_of_owners(evidence: GaussianEvidence, known: Candidate) -> Candidate:
     """The best set of the same owners: where others were let in, theirs had not the whole beam."""
     owners = known.owners
     search = Search(evidence, owned_by(owners))
-    found = search.run([known.terms, ()], most=max(len(known.terms), 1))
-    same = found.owners == owners and not fits_noise(evidence, found)
-    return found if same and found.score > known.score else known
+    searched = search.run([known.terms, ()], most=max(len(known.terms), 1))
+    same = searched.owners == owners and not fits_noise(evidence, searched)
+    return searched if same and searched.score > known.score else known

@@ -33,9 +33,9 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     evidence, posterior = fit.evidence, fit.posterior
     b, owners = posterior.base_count, _owners(fit)
     causes = [c for c in dict.fromkeys(owners[b:]) if not c.startswith("?")]
-    found = {c: 0.0 for c in (*causes, *fit.elements())}
-    if len(found) < 2:
-        return found
+    leaks = {c: 0.0 for c in (*causes, *fit.elements())}
+    if len(leaks) < 2:
+        return leaks
     at = column_indices(evidence, posterior.terms)
     model = np.hstack([evidence.base, evidence.x[:, at]])
     scale = np.concatenate([np.ones(b), evidence.scale[at]])
@@ -57,11 +57,11 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
         doubt = SHAPE_MISFIT * known_causes()[cause].shape_doubt * size
         share = np.minimum(1.0, doubt / np.maximum(left, LEAST_ANGLE_ARCSEC))
         moved = (taken * scale[:, None])[~mine] * share
-        for other in found:
+        for other in leaks:
             if other != cause:
                 error = slopes[other][~mine] @ moved
-                found[other] = float(np.hypot(found[other], rms(error)))
-    return found
+                leaks[other] = float(np.hypot(leaks[other], rms(error)))
+    return leaks
 
 
 def lengths_beyond_calibration(evidence: GaussianEvidence, columns: Sequence[int]) -> np.ndarray:

@@ -101,9 +101,9 @@ def rates_apart_within(history: History) -> float:
     """The fastest over the slowest rate within units, by travel, without starts and turns; 1 without any."""
     apart = [1.0]
     for rows in history.unit_slices:
-        if (found := moving_rates(history, rows)) is None:
+        if (rates := moving_rates(history, rows)) is None:
             continue
-        slow, fast = (by_travel(found.values, found.travel_Nm, share) for share in SLOW_AND_FAST)
+        slow, fast = (by_travel(rates.values, rates.travel_Nm, share) for share in SLOW_AND_FAST)
         apart.append(fast / slow if slow > 0 else 1.0)
     return max(apart)
 

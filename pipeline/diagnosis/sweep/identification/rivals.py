@@ -42,7 +42,7 @@ def rivals_of(
         others -= {FRICTION}
         beside = (set(), {FRICTION})
     mine = penalised(evidence, best.terms)
-    found: dict[str, tuple[float, Candidate]] = {}
+    best_by_cause: dict[str, tuple[float, Candidate]] = {}
     for other, more in product(sorted(others), beside):
         allowed = {other, *more, *(p for p in present - {cause} if not p.startswith("?"))}
         if (cause, other) == (FRICTION, RATE):
@@ -63,9 +63,11 @@ def rivals_of(
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
-            found[other] = min(found.get(other, (inf, rival)), (gap, rival), key=lambda f: f[0])
-    order = sorted(found, key=lambda other: found[other][0])
-    return tuple(order), (found[order[0]][1] if order else None)
+            best_by_cause[other] = min(
+                best_by_cause.get(other, (inf, rival)), (gap, rival), key=lambda f: f[0]
+            )
+    order = sorted(best_by_cause, key=lambda other: best_by_cause[other][0])
+    return tuple(order), (best_by_cause[order[0]][1] if order else None)
 
 
 def _is_calibration(fit: SweepFit, owner: str) -> bool:

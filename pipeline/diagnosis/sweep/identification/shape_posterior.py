@@ -23,18 +23,34 @@ def magnitude_stds(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, fl
 
     Parameters: slopes, of each magnitude for each amplitude (`SweepFit.magnitude_slopes`).
     """
-    evidence, posterior, terms = fit.evidence, fit.posterior, fit.regressors
-    shapes = [t.shape for t in terms]
-    keys = tunable(terms, shapes)
-    b = posterior.base_count
-    scale = np.concatenate([np.ones(b), *(evidence.scale[t.at] for t in terms)])
-    blocks = [evidence.x[:, t.at] for t in terms]
-    amplitude = (posterior.mean / scale)[b:]
-    whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
-    covariance = np.linalg.inv(whole.T @ whole + np.diag(prior))
+    keys, covariance = _with_shapes(fit)
+    scale = _scale(fit)
     by_shape = _shape_slopes(fit, keys)
     of_all = {c: np.concatenate([s * scale, by_shape[c]]) for c, s in slopes.items()}
     return {c: float(np.sqrt(s @ covariance @ s)) for c, s in of_all.items()}
+
+
+def calibration_covariance(fit: SweepFit) -> np.ndarray:
+    """(b, b) of zeros, compliance, gap and the torque's noise, by the same posterior."""
+    b = fit.posterior.base_count
+    return _with_shapes(fit)[1][:b, :b]
+
+
+def _with_shapes(fit: SweepFit) -> tuple[list[tuple[int, str]], np.ndarray]:
+    """Tuned parameters; covariance (p + k, p + k) of amplitudes at unit prior and of these parameters."""
+    evidence, posterior, terms = fit.evidence, fit.posterior, fit.regressors
+    shapes = [t.shape for t in terms]
+    keys = tunable(terms, shapes)
+    blocks = [evidence.x[:, t.at] for t in terms]
+    amplitude = (posterior.mean / _scale(fit))[posterior.base_count :]
+    whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
+    return keys, np.linalg.inv(whole.T @ whole + np.diag(prior))
+
+
+def _scale(fit: SweepFit) -> np.ndarray:
+    """(p,) deviations of the priors by which columns are scaled; the calibration's are as they are."""
+    own = (fit.evidence.scale[t.at] for t in fit.regressors)
+    return np.concatenate([np.ones(fit.posterior.base_count), *own])
 
 
 def _shape_slopes(fit: SweepFit, keys: list[tuple[int, str]]) -> dict[str, np.ndarray]:

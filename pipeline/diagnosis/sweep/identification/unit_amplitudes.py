@@ -63,9 +63,9 @@ def unit_amplitudes(identified: Identification, cause: str) -> UnitAmplitudes:
     rest, prior = evidence.base_with(others)
     apart = evidence.whitened(np.column_stack([effect * (unit == u) for u in range(count)]))
     common = apart.sum(axis=1, keepdims=True)
-    found, separate = _fit(evidence.y, rest, prior, apart)
+    shared, separate = _fit(evidence.y, rest, prior, apart)
     _, together = _fit(evidence.y, rest, prior, common)
-    mean, covariance = found
+    mean, covariance = shared
     return UnitAmplitudes(mean, np.sqrt(np.diag(covariance)), separate - together)
 
 

@@ -22,6 +22,8 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     hardening_std,
     width_share_std,
 )
+from flexspline.pipeline.diagnosis.sweep.magnitudes.long_lags import long_lags
+from flexspline.pipeline.diagnosis.sweep.magnitudes.soft_ends import soft_ends
 from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
 
@@ -59,6 +61,11 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if SERIES in std:
         of_laws = 100 * spring_std(identified.fit) / identified.fit.rig.prediction.compliance
         std[SERIES] = hypot(std[SERIES], of_laws)
+    ends = soft_ends(identified.fit)
+    if ends is not None:
+        std = {c: hypot(own, ends.deviation(best[c], c)) for c, own in std.items()}
+    lags = long_lags(identified.fit)
+    std = {c: hypot(own, lags.deviation(best[c], c)) for c, own in std.items()}
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))

@@ -22,7 +22,7 @@ def spring_changes(fit: SweepFit) -> list[np.ndarray]:
     """
     history = fit.rig.history
     torque = history.torque_Nm
-    found: dict[str, list[np.ndarray]] = {}
+    changes_of: dict[str, list[np.ndarray]] = {}
     for term, amplitudes in zip(
         fit.regressors, fit.posterior.amplitudes(fit.evidence), strict=True
     ):
@@ -32,8 +32,8 @@ def spring_changes(fit: SweepFit) -> list[np.ndarray]:
         mine = term.cause.columns(term.shape, history) @ amplitudes
         left = [mine - term.cause.columns(o, history) @ amplitudes for o in others]
         changes = [float(torque @ own) / float(torque @ torque) for own in left]
-        found.setdefault(term.owner, []).append(np.array(changes))
-    return [_with_all(each) for each in found.values()]
+        changes_of.setdefault(term.owner, []).append(np.array(changes))
+    return [_with_all(each) for each in changes_of.values()]
 
 
 def spring_std(fit: SweepFit, weigh: Callable[[np.ndarray], np.ndarray] = np.ones_like) -> float:

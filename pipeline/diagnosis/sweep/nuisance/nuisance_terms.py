@@ -122,7 +122,7 @@ def nuisance_terms(
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
     onto = {less: _projection(columns, share) for less, columns in taken.items()}
-    found = []
+    terms = []
     for kind in kinds:
         for channel, form, columns in kind.make(rig):
             rest = columns
@@ -132,7 +132,7 @@ def nuisance_terms(
             rms = np.sqrt(share @ rest**2)
             good = rms > NEW_SHARE * np.maximum(was, LEAST_COLUMN)
             if good.any():
-                found.append(
+                terms.append(
                     NuisanceTerm(
                         channel,
                         form,
@@ -143,7 +143,7 @@ def nuisance_terms(
                         kind.apart,
                     )
                 )
-    return found
+    return terms
 
 
 def _projection(columns: np.ndarray, share: np.ndarray) -> np.ndarray:

@@ -100,44 +100,44 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     if guess is None:
         return None
     try:
-        found, std = _raced_with(prepared, guess)
+        raced, std = _raced_with(prepared, guess)
     except TooFewRowsError:
         return None
-    if not _seen(found):
+    if not _seen(raced):
         return None
-    nats = guess.nats if _is_guessed(found, guess.friction_Nm) else 0.0
-    if nats < SURE_NATS + _unnamed_nats(found):
+    nats = guess.nats if _is_guessed(raced, guess.friction_Nm) else 0.0
+    if nats < SURE_NATS + _unnamed_nats(raced):
         plain = run_race(prepared)
-        gain = gained(found, plain)
+        gain = gained(raced, plain)
         if (
             nats < SURE_NATS or gain < AHEAD_NATS
         ):  # else the guess is surer than of any shifted reading
             plain = with_torque_offset(plain)
-            gain = gained(found, plain)
+            gain = gained(raced, plain)
         if gain < AHEAD_NATS:
             return plain
         nats = gain
-    return replace(found, ahead=FoundAhead(std, nats))
+    return replace(raced, ahead=FoundAhead(std, nats))
 
 
-def _seen(found: ExplainedSweep) -> bool:
+def _seen(raced: ExplainedSweep) -> bool:
     """Whether the friction stands out of the torque's noise, in which rows lie on either side anyhow."""
-    ahead = found.prepared.ahead
+    ahead = raced.prepared.ahead
     assert ahead is not None
-    return ahead.amplitudes[0] > UNSEEN_SIGMAS * torque_noise_Nm(found.prepared.rig.history)
+    return ahead.amplitudes[0] > UNSEEN_SIGMAS * torque_noise_Nm(raced.prepared.rig.history)
 
 
-def _is_guessed(found: ExplainedSweep, friction_Nm: float) -> bool:
+def _is_guessed(raced: ExplainedSweep, friction_Nm: float) -> bool:
     """Whether the race has about the friction that was guessed, of whose place the guess is sure: a gap that
     moves between cycles may look like some."""
-    ahead = found.prepared.ahead
+    ahead = raced.prepared.ahead
     assert ahead is not None
     return abs(float(np.log(ahead.amplitudes[0] / friction_Nm))) < OTHER_FRICTION_LOG
 
 
-def _unnamed_nats(found: ExplainedSweep) -> float:
+def _unnamed_nats(raced: ExplainedSweep) -> float:
     """Of the evidence, what terms without a name have."""
-    search, best = found.identified.search, found.identified.best
+    search, best = raced.identified.search, raced.identified.best
     named = [i for i in best.terms if search.evidence.terms[i].cause is not None]
     return best.log_evidence - search.candidate(named).log_evidence
 
@@ -152,33 +152,33 @@ def _raced_with(plain: PreparedSweep, guess: AheadGuess) -> tuple[ExplainedSweep
         seen = seen or _crossing(
             explained
         )  # the first: later fits have bent towards their friction
-        found = _tuned(explained, seen)
+        tuned = _tuned(explained, seen)
         if seen is not None:
-            found = _held_at(found, seen)
+            tuned = _held_at(tuned, seen)
         shifted = offset_of(explained)
         if not offset and abs(shifted) < _step_across(now.rig.history):
             shifted = 0.0
-        moved = abs(found.element.amplitudes[0] - element.amplitudes[0])
-        bent = abs(float(np.log(found.element.shape[AHEAD] / element.shape[AHEAD])))
+        moved = abs(tuned.element.amplitudes[0] - element.amplitudes[0])
+        bent = abs(float(np.log(tuned.element.shape[AHEAD] / element.shape[AHEAD])))
         settled = AHEAD_SETTLED_SHARE * plain.rig.largest_Nm
         if moved < settled and bent < SETTLED_LOG and abs(shifted - offset) < settled:
             break
-        element, offset = found.element, shifted
-    return explained, found.torque_std_Nm
+        element, offset = tuned.element, shifted
+    return explained, tuned.torque_std_Nm
 
 
 def _begun(plain: PreparedSweep, guess: AheadGuess) -> Element:
     """What a race begins with: the friction that the loop's shape says, where the gap's step allows it."""
     history, gap = true_history(plain.sweep), plain.prediction.gap_arcsec
     first = ahead_element(guess.friction_Nm, history)
-    found = _alone(prepare(plain.sweep, plain.prediction, guess.offset_Nm, first)).element
-    friction = found.amplitudes[0]
+    tuned = _alone(prepare(plain.sweep, plain.prediction, guess.offset_Nm, first)).element
+    friction = tuned.amplitudes[0]
     if abs(float(np.log(friction / guess.friction_Nm))) < GUESS_LOG:
-        return found
+        return tuned
     most = BEYOND_BOTH * max(friction, guess.friction_Nm)
     low, high = frictions_alike(history, plain.sweep.angle_arcsec, gap, guess, most)
     inside = (f for f in (friction, guess.friction_Nm) if low <= f <= high)
-    return replace(found, amplitudes=(next(inside, (low + high) / 2),))
+    return replace(tuned, amplitudes=(next(inside, (low + high) / 2),))
 
 
 def _tuned(explained: ExplainedSweep, seen: Crossing | None) -> TunedAhead:
@@ -188,25 +188,25 @@ def _tuned(explained: ExplainedSweep, seen: Crossing | None) -> TunedAhead:
     stays where it is needed beside the best friction ahead.
     """
     search, terms = explained.identified.search, explained.identified.best.terms
-    found = tuned_ahead(explained.prepared, search.evidence, terms, seen)
+    with_friction = tuned_ahead(explained.prepared, search.evidence, terms, seen)
     less = tuple(i for i in terms if search.evidence.terms[i].owner != FRICTION)
     if less == terms:
-        return found
+        return with_friction
     without = tuned_ahead(explained.prepared, search.evidence, less, seen)
-    more_needed = found.nats + search.prior(terms) - without.nats - search.prior(less)
-    return found if more_needed > 0 else without
+    more_needed = with_friction.nats + search.prior(terms) - without.nats - search.prior(less)
+    return with_friction if more_needed > 0 else without
 
 
-def _held_at(found: TunedAhead, seen: Crossing) -> TunedAhead:
+def _held_at(tuned: TunedAhead, seen: Crossing) -> TunedAhead:
     """Moved to where the gap is crossed, if it lies far from there.
 
     Friction of another kind bends the loop as this does; the step of the gap is this one's alone.
     """
-    friction = found.element.amplitudes[0]
+    friction = tuned.element.amplitudes[0]
     if abs(friction - seen.offset_Nm) < FAR_PLACE_DEVIATIONS * seen.std_Nm or seen.offset_Nm <= 0:
-        return found
-    element = replace(found.element, amplitudes=(seen.offset_Nm,))
-    return replace(found, element=element, torque_std_Nm=seen.std_Nm)
+        return tuned
+    element = replace(tuned.element, amplitudes=(seen.offset_Nm,))
+    return replace(tuned, element=element, torque_std_Nm=seen.std_Nm)
 
 
 def _alone(prepared: PreparedSweep) -> TunedAhead:
@@ -235,12 +235,12 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     along, height = way * history.torque_Nm + friction, way * fit.left_but_for_gap()
     along, height, gap = along[good], height[good], fit.gap_arcsec()[good]
     noise = prepared.noise.std_arcsec
-    found = crossing(along, height, gap, noise, torque_noise_Nm(history))
-    if found is None:
+    place = crossing(along, height, gap, noise, torque_noise_Nm(history))
+    if place is None:
         return None
     beside = np.abs(height) > WITHIN_GAP * gap
-    between = PLACE_BETWEEN_ROWS * between_rows(along[beside], found.offset_Nm, PASSED_OVER)
-    return replace(found, std_Nm=max(found.std_Nm, between))
+    between = PLACE_BETWEEN_ROWS * between_rows(along[beside], place.offset_Nm, PASSED_OVER)
+    return replace(place, std_Nm=max(place.std_Nm, between))
 
 
 def _step_across(history: History) -> float:

@@ -192,7 +192,7 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     """
     evidence = search.evidence
     enough = GOOD_PART * best.log_evidence
-    found = {
+    term_sets = {
         c.terms for owners, c in search.best.items() if len(owners) == 1 and c.log_evidence > enough
     }
     kinds: dict[str, dict[tuple[float | str, ...], Candidate]] = {}
@@ -204,19 +204,19 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
         mine = kinds.setdefault(term.owner, {})
         if len(mine) < TUNED_KINDS:
             mine.setdefault(term.cause.kind(term.shape), c)
-    found |= {c.terms for mine in kinds.values() for c in mine.values()}
-    return sorted(found - {best.terms})
+    term_sets |= {c.terms for mine in kinds.values() for c in mine.values()}
+    return sorted(term_sets - {best.terms})
 
 
 def _refined(evidence: GaussianEvidence, terms: Sequence[int]) -> list[tuple[Regressor, Shape]]:
     """The shapes of a set, tuned; where a spring is in it, those too that leave it another size."""
-    found = list(tuned(evidence, terms).shapes)
+    pairs = list(tuned(evidence, terms).shapes)
     if SERIES in {evidence.terms[i].owner for i in terms}:
-        for term, shape in list(found):
+        for term, shape in list(pairs):
             if term.cause is not None:
                 others = term.cause.but_for_a_spring(shape, evidence.columns.rig)
-                found += [(term, other) for other in others]
-    return found
+                pairs += [(term, other) for other in others]
+    return pairs
 
 
 def _by_other_laws(search: Search, best: Candidate) -> list[tuple[int, ...]]:
@@ -230,14 +230,14 @@ def _by_other_laws(search: Search, best: Candidate) -> list[tuple[int, ...]]:
         return {terms[i].law for i in c.terms}
 
     owners, known = best.owners, [laws(best)]
-    found: list[tuple[int, ...]] = []
+    term_sets: list[tuple[int, ...]] = []
     for c in sorted(search.tried, key=lambda c: -c.score):
-        if len(found) == TUNED_LAWS:
+        if len(term_sets) == TUNED_LAWS:
             break
         if c.owners == owners and laws(c) not in known:
             known.append(laws(c))
-            found.append(c.terms)
-    return found
+            term_sets.append(c.terms)
+    return term_sets
 
 
 def _evidence(prepared: PreparedSweep) -> GaussianEvidence:

@@ -87,21 +87,21 @@ def offset_of(explained: ExplainedSweep) -> float:
 
 def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep, ...]:
     """The first race with an offset taken off, and the last with it found again; none where it vanishes."""
-    found: list[ExplainedSweep] = []
+    raced: list[ExplainedSweep] = []
     for _ in range(OFFSET_ROUNDS):
         try:
-            found.append(run_race(prepare(plain.sweep, plain.prediction, offset_Nm, plain.ahead)))
+            raced.append(run_race(prepare(plain.sweep, plain.prediction, offset_Nm, plain.ahead)))
         except TooFewRowsError:
             return ()
-        seen, prepared = found[-1].crossing, found[-1].prepared
+        seen, prepared = raced[-1].crossing, raced[-1].prepared
         if seen is None or not is_shifted(seen, prepared):
             return ()
         if abs(seen.offset_Nm - offset_Nm) < max(
             SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.largest_Nm
         ):
-            return (found[0], *found[1:][-1:])  # one race is both
+            return (raced[0], *raced[1:][-1:])  # one race is both
         offset_Nm = seen.offset_Nm
-    return (found[0], replace(found[-1], offset_Nm=offset_Nm))
+    return (raced[0], replace(raced[-1], offset_Nm=offset_Nm))
 
 
 def wrong_side_rows(explained: ExplainedSweep) -> int:
@@ -121,20 +121,20 @@ def _unsure_Nm(prepared: PreparedSweep) -> float:
     return max(BESIDE_STEP * prepared.rig.largest_Nm, BAND_SIGMAS * noise_Nm)
 
 
-def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
-    """By how many nats a record is better explained by `found`, which takes another torque for the true one.
+def gained(raced: ExplainedSweep, plain: ExplainedSweep) -> float:
+    """By how many nats a record is better explained by `raced`, which takes another torque for the true one.
 
     Judged on all rows but those whose side of the gap is unsure with either torque; a row that one of them
     calls a spike costs it what a spike does, whatever its misfit.
     """
-    one, other = (e.prepared.rig.history for e in (found, plain))
+    one, other = (e.prepared.rig.history for e in (raced, plain))
     side = _unsure_Nm(plain.prepared)
     common = (np.abs(one.torque_Nm) > side) & (np.abs(other.torque_Nm) > side)
     for history in (one, other):
         common &= ~(turning(history) | settling(history))
-    spikes = {id(e): int((common & e.prepared.outlier).sum()) for e in (found, plain)}
-    common &= ~(found.prepared.outlier | plain.prepared.outlier)
-    quieter = min((found, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
+    spikes = {id(e): int((common & e.prepared.outlier).sum()) for e in (raced, plain)}
+    common &= ~(raced.prepared.outlier | plain.prepared.outlier)
+    quieter = min((raced, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
 
     def total(e: ExplainedSweep) -> float:
         p = e.prepared
@@ -143,4 +143,4 @@ def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
         of_base = log_evidence(again.base_gram, again.base_right)
         return best.score + of_base - again.total / 2 - SPIKE_NATS * spikes[id(e)]
 
-    return total(found) - total(plain)
+    return total(raced) - total(plain)

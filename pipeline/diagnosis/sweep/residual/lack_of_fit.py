@@ -39,12 +39,12 @@ def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | Non
     codes = _places(prepared)
     if codes is None:
         return None
-    found = Residual.of(prepared, fit).tested("torque_Nm", codes)
+    misfit = Residual.of(prepared, fit).tested("torque_Nm", codes)
     rounding = rounding_left_arcsec(prepared, fit)
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
-    if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding, of_torque):
+    if misfit.p_value > UNKNOWN_P_VALUE or misfit.rms_arcsec < max(rounding, of_torque):
         return None
-    return found
+    return misfit
 
 
 def _places(prepared: PreparedSweep) -> np.ndarray | None:

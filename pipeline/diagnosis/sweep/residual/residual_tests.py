@@ -53,12 +53,12 @@ def channel_tests(prepared: PreparedSweep, fit: SweepFit) -> list[ChannelTest]:
     structure.
     """
     residual = Residual.of(prepared, fit)
-    found = [
+    tests = [
         residual.tested(channel, codes)
         for channel, values in _channels(prepared).items()
         if (codes := _bins(values)).max() > 0
     ]
-    return [*found, _wave(prepared, residual.left)]
+    return [*tests, _wave(prepared, residual.left)]
 
 
 @dataclass(frozen=True)
@@ -140,20 +140,20 @@ def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
     side = direction_of_loading(h)
     # bins of the raw reading would sort a hold's rows by the torque's noise, which the angle shows
     torque = steadied(h, STEADY_SIGMAS * torque_noise_Nm(h))
-    found: dict[str, np.ndarray] = {
+    channels: dict[str, np.ndarray] = {
         "torque_Nm": torque,
         "direction": torque + APART_TORQUES * prepared.rig.largest_Nm * side,
         "cycle": h.cycle.astype(float),
     }
     if prepared.sweep.history.time_s is not None and h.time_s is not None:
-        found["time_s"] = h.time_s
+        channels["time_s"] = h.time_s
     if h.temperature_C is not None:
-        found["temperature_C"] = h.temperature_C
+        channels["temperature_C"] = h.temperature_C
     if h.input_angle_deg is not None:
-        found["input_angle_deg"] = h.input_angle_deg
+        channels["input_angle_deg"] = h.input_angle_deg
     if len(prepared.sweep.units) > 1:
-        found["unit"] = h.unit.astype(float)
-    return found
+        channels["unit"] = h.unit.astype(float)
+    return channels
 
 
 def _bins(values: np.ndarray) -> np.ndarray:

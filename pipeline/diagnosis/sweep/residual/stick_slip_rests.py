@@ -86,7 +86,7 @@ def _moves_more(
     left: np.ndarray, hold: np.ndarray, pieces: list[slice], step: float, of_torque: float
 ) -> float:
     """p-value that steps between blocks are no larger in motion, of the length that shows it best."""
-    found = []
+    ratios = []
     for rows in STUCK_BLOCK_ROWS:
         rest, motion = _steps(left, hold, pieces, rows)
         if min(len(rest), len(motion)) < FEWEST_STEPS:
@@ -96,8 +96,8 @@ def _moves_more(
         if calm <= 0 or lively <= 0:
             continue
         doubt = CORRELATION_FACTOR * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
-        found.append(np.log(lively / calm) / np.sqrt(max(doubt, LEAST_LOG_VARIANCE)))
-    return p_value_of_best(float(ndtr(-max(found))), len(found)) if found else 1.0
+        ratios.append(np.log(lively / calm) / np.sqrt(max(doubt, LEAST_LOG_VARIANCE)))
+    return p_value_of_best(float(ndtr(-max(ratios))), len(ratios)) if ratios else 1.0
 
 
 def _steps(

@@ -31,9 +31,9 @@ class Jumps:
     rms_arcsec: float
 
 
-def largest(*found: Jumps | None) -> Jumps | None:
+def largest(*jumps: Jumps | None) -> Jumps | None:
     """Of the same saw-tooth, seen by several tests: the largest rms; None where none sees any."""
-    return max((f for f in found if f is not None), key=lambda f: f.rms_arcsec, default=None)
+    return max((f for f in jumps if f is not None), key=lambda f: f.rms_arcsec, default=None)
 
 
 def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
@@ -50,8 +50,8 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     history, kept = prepared.rig.history, prepared.kept
     left, motion = fit.residual()[kept], direction_of_loading(history)[kept]
     pieces = stretches_of(history, kept)
-    found = [_skewness(left, motion, pieces, rows) for rows in JUMP_BLOCK_ROWS]
-    p_value = p_value_of_best(float(ndtr(-max(found))), len(found))
+    skewnesses = [_skewness(left, motion, pieces, rows) for rows in JUMP_BLOCK_ROWS]
+    p_value = p_value_of_best(float(ndtr(-max(skewnesses))), len(skewnesses))
     if p_value > STRUCTURE_P_VALUE:
         return None
     every = float(np.var(left))

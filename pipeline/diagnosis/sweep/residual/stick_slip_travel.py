@@ -53,12 +53,12 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     time = history.time_or_rows(np.arange(len(kept)))
     pairs = _pairs(stretches_of(history, kept), _resting(history)[kept])
     largest = prepared.rig.largest_Nm
-    found = [
+    scatters = [
         _slope(left, way / (share * largest), time[kept], pairs, prepared.noise)
         for share in REACHES
     ]
-    deviations, variance = max(found)
-    p_value = p_value_of_best(float(ndtr(-deviations)), len(found))
+    deviations, variance = max(scatters)
+    p_value = p_value_of_best(float(ndtr(-deviations)), len(scatters))
     if variance > MOST_OF_RESIDUAL * float(np.var(left)):  # rounding in step with the programme
         return None
     rounding = rounding_of_angle(prepared, fit).left_arcsec ** 2
@@ -77,11 +77,11 @@ def _resting(history: History) -> np.ndarray:
 
 def _pairs(pieces: list[slice], resting: np.ndarray) -> list[np.ndarray]:
     """First rows (p,) of the pairs 1, 2, … `FARTHEST` rows apart, both in one stretch, neither in a hold."""
-    found = []
+    pairs = []
     for k in range(1, FARTHEST + 1):
         first = np.concatenate([np.arange(s.start, max(s.start, s.stop - k)) for s in pieces])
-        found.append(first[~resting[first] & ~resting[first + k]])
-    return found
+        pairs.append(first[~resting[first] & ~resting[first + k]])
+    return pairs
 
 
 def _slope(

@@ -47,30 +47,30 @@ def unexplained_of(
 
     `told` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
     """
-    found = []
+    unexplained = []
     forms = _forms(identified)
     for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
         rms = identified.rms[owner]
         if owner.startswith("?"):
             named = tuple(dict.fromkeys(_as_said(f, units) for o, f in forms if o == owner))
-            found.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
+            unexplained.append(Unexplained(owner[1:], rms, NUISANCE_P, named))
         else:
-            found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
+            unexplained.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
     if jumps is not None:
-        found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPS))
+        unexplained.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPS))
     if again is not None:
-        found.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
-    said = {u.channel for u in found}
+        unexplained.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
+    said = {u.channel for u in unexplained}
     for t in sorted(tests, key=lambda t: t.p_value):
         if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:
-            found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
-    return tuple(found)
+            unexplained.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
+    return tuple(unexplained)
 
 
 def _forms(identified: Identification) -> list[tuple[str, UnnamedForm]]:
     """Owner and form of each term of the best set that has no name, a bend of one side with its size."""
     evidence, posterior = identified.search.evidence, identified.fit.posterior
-    found = []
+    forms = []
     for i, amplitudes in zip(posterior.terms, posterior.amplitudes(evidence), strict=True):
         term = evidence.terms[i]
         if term.form is None:
@@ -79,8 +79,8 @@ def _forms(identified: Identification) -> list[tuple[str, UnnamedForm]]:
         if form.kind == "one_sided":
             most = float(np.abs(evidence.columns.all[:, term.at]).max())
             form = replace(form, more_arcsec=float(amplitudes[0]) * most)
-        found.append((term.owner, form))
-    return found
+        forms.append((term.owner, form))
+    return forms
 
 
 def _as_said(form: UnnamedForm, units: Sequence[str]) -> UnnamedForm:

@@ -71,16 +71,16 @@ def backward_loop(
     if not len(loads):
         return None
     noise = _as_repeated(loads, angle_arcsec, noise)
-    found, quickest = _backward(loads, angle_arcsec, noise), None
-    if found is None and loads.rates is not None:
+    loop, quickest = _backward(loads, angle_arcsec, noise), None
+    if loop is None and loads.rates is not None:
         quickest = float(loads.rates.max())
-        found = _backward(loads.only(loads.rates * QUICK_RATIO > quickest), angle_arcsec, noise)
-    if found is None:
+        loop = _backward(loads.only(loads.rates * QUICK_RATIO > quickest), angle_arcsec, noise)
+    if loop is None:
         return None
     unrecorded = tuple(channel for channel in WOULD_SHOW if getattr(history, channel) is None)
     delay = torque_delay_s(loads, angle_arcsec, band_Nm)
     grows = True if quickest or delay else _grow(loads, angle_arcsec)
-    return BackwardLoop(*found, quickest, delay, grows, unrecorded)
+    return BackwardLoop(*loop, quickest, delay, grows, unrecorded)
 
 
 def _grow(loads: HalfCycles, angle_arcsec: np.ndarray) -> bool | None:

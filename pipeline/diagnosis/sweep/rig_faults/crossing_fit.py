@@ -53,7 +53,7 @@ def likeliest(fit: CrossingFit) -> float:
 class CrossedRecord:
     """A record, whose angle is smooth functions of torque with any loop, and the gap's step in one form.
 
-    `found` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen. Without
+    `added` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen. Without
     `loops` there is no loop but the form's own, by the torque that the twist follows.
     """
 
@@ -61,7 +61,7 @@ class CrossedRecord:
     angle_arcsec: np.ndarray
     gap_arcsec: float
     noise_arcsec: float
-    found: tuple[np.ndarray, ...] = ()
+    added: tuple[np.ndarray, ...] = ()
     most_rows: int = MOST_FIRST_ROWS
     loops: bool = True
 
@@ -86,7 +86,7 @@ class CrossedRecord:
         eigenvalues, for each form anew.
         """
         functions = looped_functions if self.loops else unlooped_functions
-        columns = np.column_stack([functions(self.history), *self.found])[self.rows]
+        columns = np.column_stack([functions(self.history), *self.added])[self.rows]
         apart, sizes, _ = np.linalg.svd(columns, full_matrices=False)
         told = sizes > SINGULAR_SHARE**0.5 * sizes.max(initial=0.0)
         return np.asarray(apart[:, told] * np.sqrt(len(columns)))
@@ -114,12 +114,12 @@ class CrossedRecord:
         basis, angle = np.column_stack(columns), self.angle_arcsec[self.rows]
         weight = 1 / deviation
         for _ in range(WEIGHINGS):
-            found = weighted_fit(basis, angle, weight)
-            off = np.abs(angle - basis @ found) / deviation
+            coefficients = weighted_fit(basis, angle, weight)
+            off = np.abs(angle - basis @ coefficients) / deviation
             before, weight = weight, 1 / deviation / np.maximum(1, off / ROBUST_DEVIATIONS)
             if np.array_equal(weight, before):
                 break
-        if found[0] < LEAST_STEP * self.gap_arcsec:
+        if coefficients[0] < LEAST_STEP * self.gap_arcsec:
             return CrossingFit(tried, -np.inf, np.inf)
         # a row that lies anywhere costs what a spike does
         huber = np.where(

@@ -76,7 +76,7 @@ def dragged_crossing_of(
     noise = max(FINEST_ARCSEC, min(noise, min(fit.left_arcsec for fit in fits)))
     with_drag = replace(with_drag, noise_arcsec=noise)
     likelihood = np.array([with_drag.of(one).log_likelihood for one in fine])
-    other = replace(with_drag, found=tuple(added.values())).best(_without_drag(history, frictions))
+    other = replace(with_drag, added=tuple(added.values())).best(_without_drag(history, frictions))
     if (likelihood.max() - other.log_likelihood) / DEPENDENT < FIRST_NATS:
         return None
     best = fine[int(likelihood.argmax())]

@@ -28,14 +28,14 @@ class HalfCycles:
     @classmethod
     def of(cls, history: History, band_Nm: float) -> HalfCycles:
         """The gap is crossed within ± `band_Nm`, whose rows are no load's."""
-        found = []
+        halves = []
         for rows in history.unit_slices:
             torque = history.torque_Nm[rows]
             side = np.where(np.abs(torque) > band_Nm, np.sign(torque), 0)
             begun = np.r_[0, np.flatnonzero(np.diff(side)) + 1]
             parts = zip(np.split(rows, begun[1:]), side[begun], strict=True)
-            found += [own for own, way in parts if way and _returns(history, own)]
-        return cls(history, tuple(found))
+            halves += [own for own, way in parts if way and _returns(history, own)]
+        return cls(history, tuple(halves))
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -81,15 +81,15 @@ def late_angle_of(
         return None
     gap = prepared.prediction.gap_arcsec
     angle, noise = prepared.sweep.angle_arcsec, prepared.noise.std_arcsec
-    found = _found(explained)
-    whole = _searched(CrossedRecord(history, angle, gap, noise, tuple(found.values())))
+    terms_found = _found(explained)
+    whole = _searched(CrossedRecord(history, angle, gap, noise, tuple(terms_found.values())))
     if whole.nats >= FIRST_NATS:
         return _sized(whole)
-    apart = tuple(own for owner, own in found.items() if owner not in IMITATED)
-    if len(apart) == len(found):
+    apart = tuple(own for owner, own in terms_found.items() if owner not in IMITATED)
+    if len(apart) == len(terms_found):
         return None
     alone = _searched(CrossedRecord(history, angle, gap, noise, apart))
-    fewer = NAMED_COST * (len(found) - len(apart))
+    fewer = NAMED_COST * (len(terms_found) - len(apart))
     if alone.nats >= FIRST_NATS and is_rival(_behind(alone, whole) - fewer, np.inf):
         return _sized(alone)
     return None

@@ -46,8 +46,10 @@ def torque_delay_s(
     was = widths(0.0)
 
     def unlike(delay_s: float) -> float:
-        found = widths(delay_s)
-        return float((found if len(found) == len(was) else OTHER_LOADS_RATIO * was).std())
+        measured_widths = widths(delay_s)
+        return float(
+            (measured_widths if len(measured_widths) == len(was) else OTHER_LOADS_RATIO * was).std()
+        )
 
     tried = np.linspace(0.0, longest, TRIED)
     best = int(np.argmin([unlike(one) for one in tried]))

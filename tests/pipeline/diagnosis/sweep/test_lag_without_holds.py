@@ -13,6 +13,10 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s, holds
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
+from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
+from flexspline.pipeline.diagnosis.sweep.race.race import run_race
 
 ROWS = 160
 """Of a cycle."""
@@ -139,3 +143,21 @@ def test_creep_without_holds_is_not_surely_a_lag(wave: Wave) -> None:
     lag = next(c for c in found.causes if c.id == "rate_dependence")
     assert "creep" in lag.alternatives
     assert found.verdict == "ambiguous"
+
+
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize("tau_s", [200.0, 400.0])
+def test_of_a_lag_of_a_cycle_and_more_size_and_compliance_are_within_what_is_stated(
+    tau_s: float,
+) -> None:
+    """At one rate the record shows the twist c·T/τ that goes by: c and τ are known by the start alone."""
+    history = run(sine, (200.0,), 6)
+    noise = np.random.default_rng(6).normal(0, NOISE, len(history))
+    added = kelvin(history, sine, tau_s)
+    explained = run_race(prepare(as_read(history, simulated(history) + added + noise), PREDICTION))
+    lag = next(c for c in named_causes(explained) if c.id == "rate_dependence")
+    true = SHARE * PREDICTION.compliance
+    assert abs(lag.magnitude - true * tau_s) < 3 * lag.magnitude_std
+    found = calibration_of(explained).compliance
+    assert found is not None
+    assert abs(found.value - PREDICTION.compliance - true) < 3 * found.std
