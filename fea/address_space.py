@@ -30,7 +30,7 @@ def refuse_little_address_space() -> None:
 
 
 def free_address_space_bytes() -> float:
-    """What the limit leaves to this process, inf without a limit."""
+    """Return the address space that the limit leaves to this process [bytes]; inf without a limit."""
     most = _limit_bytes()
     return most if most == inf else most - _used_bytes()
 

@@ -17,7 +17,7 @@ from {module} import {function}
 
 
 def child_command(module: str, function: str, *arguments: str) -> list[str]:
-    """Words of a command that calls a module's function with the arguments, as text, in a new process.
+    """Return a command that calls a module's function, with text arguments, in a new process.
 
     The child searches for modules where this process does, wherever it is started; without `-P` Python
     would look for the first ones in the child's own folder.

@@ -25,7 +25,7 @@ class OutOfTimeError(ComputationError):
 
 
 class Deadline:
-    """So many seconds from now on.
+    """A time limit of so many seconds from now on.
 
     `clock` [s] tells the time, `working` [s] how long this thread has been computing; tests give their own.
     """
@@ -40,7 +40,7 @@ class Deadline:
         self.working = working
 
     def elapsed(self) -> float:
-        """Seconds since it was made."""
+        """Return the seconds since the deadline was made."""
         return self._clock() - self._began
 
 
@@ -48,7 +48,7 @@ NO_DEADLINE = Deadline(inf)
 
 
 class Pace:
-    """How long the steps towards a deadline take, each on a mesh of its own size.
+    """Measures the time of steps towards a deadline, each on a mesh of its own size.
 
     A step is measured by the processor time of this thread: what other programs take on a busy machine is
     lost time, and no reason to expect the next step to take longer.

@@ -9,13 +9,13 @@ CENTRING = 3
 
 
 def room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray) -> float:
-    """Share of a step (`push`, `lift`), at most 1, that leaves forces and gaps positive; (k,) each."""
+    """Return the share of a step (`push`, `lift`), at most 1, that leaves forces and gaps (k,) positive."""
     nearest = max(float((-push / force).max()), float((-lift / gap).max()))
     return 1.0 if nearest <= 1 else 1 / nearest
 
 
 def corrected(force: np.ndarray, gap: np.ndarray, push: np.ndarray, lift: np.ndarray) -> np.ndarray:
-    """(k,) by how much forces times gaps shall grow, after a plain Newton step (`push`, `lift`) was tried.
+    """Return (k,) by how much forces times gaps shall grow, after a plain Newton step (`push`, `lift`).
 
     What that step leaves, gone as far as there is room, says how far to aim; `push` times `lift` is what a
     straight step misses.

@@ -11,7 +11,7 @@ from scipy.sparse import csr_matrix
 
 @dataclass(frozen=True)
 class EntryPlaces:
-    """Where a CSR matrix has its entries: where each row starts, and their columns."""
+    """The places of a CSR matrix's entries: where each row starts, and the columns."""
 
     starts: np.ndarray
     columns: np.ndarray
@@ -46,7 +46,7 @@ class KeptEntries:
     def of(
         cls, matrix: csr_matrix, keep: Callable[[np.ndarray, np.ndarray], np.ndarray]
     ) -> KeptEntries:
-        """`keep` gives the mask, of the entries' rows and columns."""
+        """Select entries by `keep`, which returns a mask from their rows and columns."""
         n = matrix.shape[0]
         rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(matrix.indptr))
         kept = keep(rows, matrix.indices)
@@ -55,5 +55,5 @@ class KeptEntries:
 
 
 def starts_of(counts: np.ndarray) -> np.ndarray:
-    """(n + 1,) where each row starts, by the entries of each (n,)."""
+    """Return (n + 1,) where each row starts, from the number of entries of each row (n,)."""
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)

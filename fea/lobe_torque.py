@@ -9,10 +9,10 @@ LOBE_TORQUE_NMM = NMM_PER_NM
 
 
 def stiffness_of_work(work_Nmm: float) -> float:
-    """K = T²/(T·Θ) [N·m/rad]; the work T·Θ is twice the strain energy (Clapeyron)."""
+    """Return K = T²/(T·Θ) [N·m/rad]; the work T·Θ is twice the strain energy (Clapeyron)."""
     return LOBE_TORQUE_NMM**2 / work_Nmm / NMM_PER_NM
 
 
 def work_of_stiffness(K_Nm_per_rad: float) -> float:
-    """T·Θ [N·mm]."""
+    """Return the work T·Θ [N·mm] of a stiffness [N·m/rad]."""
     return LOBE_TORQUE_NMM**2 / (K_Nm_per_rad * NMM_PER_NM)

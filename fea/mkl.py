@@ -21,7 +21,7 @@ command takes 1 % more of the processor."""
 
 @cache
 def mkl() -> Any:
-    """The library, or None where MKL does not exist or cannot be loaded."""
+    """Return MKL's library; None where it does not exist or cannot be loaded."""
     if free_address_space_bytes() < LIBRARIES_BYTES:
         return None
     for name, value in SETTINGS.items():  # which it reads once
@@ -49,5 +49,5 @@ def _load_kernels(library: Any) -> None:
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:
-    """Of the first entry of an array, which must outlive the call."""
+    """Return a pointer to the first entry of an array, which must outlive the call."""
     return ctypes.c_void_p(array.ctypes.data)

@@ -11,7 +11,7 @@ ElementValues = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def nodal_average(count: int, components: int, parts: Iterable[ElementValues]) -> np.ndarray:
-    """Weighted mean (count, components) at every node over the elements that meet there."""
+    """Return the weighted mean (count, components) at every node over the elements that meet there."""
     shares, sums = np.zeros(count), np.zeros((components, count))
     for nodes, weight, values in parts:
         at, share = nodes.ravel(), np.repeat(weight, nodes.shape[1])

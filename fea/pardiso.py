@@ -85,7 +85,7 @@ class PardisoFactors:
         return True
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """K⁻¹ f (N,) or (N, k), in double whatever the factors are."""
+        """Return K⁻¹ f (N,) or (N, k), in double precision whatever the factors are."""
         b = np.asfortranarray(right, self._type)
         x = np.zeros_like(b)
         self._do(SUBSTITUTE, b, x)
@@ -112,12 +112,12 @@ def _call(
     columns = 1 if b is None or b.ndim == 1 else b.shape[1]
     one, silent, error = _pointer(1), _pointer(0), ctypes.c_int32(0)
     data, starts, places = map(address, matrix) if matrix else (None,) * 3
-    right, found = (None if v is None else address(v) for v in (b, x))
+    right, solution = (None if v is None else address(v) for v in (b, x))
     of_caller = _set_threads(threads)
     pardiso()(
         address(pt), one, one, _pointer(SYMMETRIC_POSITIVE), _pointer(phase), _pointer(unknowns),
         data, starts, places, None, _pointer(columns), address(iparm), silent,
-        right, found, ctypes.byref(error),
+        right, solution, ctypes.byref(error),
     )  # fmt: skip
     _set_threads(of_caller)
     if error.value:
@@ -161,7 +161,7 @@ def _said(error: int, unknowns: int) -> SolveError:
 
 @cache
 def pardiso() -> Any:
-    """MKL's routine of that name, or None where MKL does not exist."""
+    """Return MKL's routine of that name, or None where MKL does not exist."""
     library = mkl()
     if library is None:
         return None

@@ -47,7 +47,7 @@ def _file() -> int:
 
 
 class ProcessLock(AbstractContextManager[None]):
-    """Of one thread and one process at a time, which may take it again within. `place`: its own, from 0."""
+    """A lock of one thread in one process, which may take it again. `place` [from 0] is its own."""
 
     def __init__(self, place: int) -> None:
         self._place = place

@@ -17,7 +17,7 @@ from flexspline.geometry.errors import ComputationError
 
 
 class SizedMesh(Protocol):
-    """What the loop knows of a mesh."""
+    """A mesh that knows its number of elements."""
 
     @property
     def elements(self) -> int: ...
@@ -74,7 +74,7 @@ def refinements(
 def refine(
     model: Refinable[M], mesh: M, deadline: Deadline = NO_DEADLINE, most_elements: float = inf
 ) -> Shortfall:
-    """Solve on `mesh` and on finer ones until the tolerance is met; why, where that did not come about.
+    """Solve on `mesh` and on finer ones until the tolerance is met; return why, where it was not.
 
     Parameters
     ----------

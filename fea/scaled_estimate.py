@@ -7,7 +7,7 @@ one before, K_1 − K_2 = d leaves d·q/(1 − q).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,13 +28,13 @@ class EstimatedBounds(NamedTuple):
 
     @property
     def half(self) -> float:
-        """Half of their distance over K."""
+        """Return half of their distance over K."""
         return (self.upper - self.lower) / (2 * self.K)
 
 
 @dataclass(frozen=True)
 class MeshResult:
-    """What one mesh tells of K: an upper end, but for `doubt`.
+    """One mesh's K, which is an upper bound but for `doubt`.
 
     Attributes
     ----------
@@ -49,13 +49,13 @@ class MeshResult:
 
     @property
     def K_Nm_per_rad(self) -> float:
-        """That it gives."""
+        """K that the mesh gives."""
         return self.level.K_Nm_per_rad
 
 
-@dataclass
+@dataclass(frozen=True)
 class ScaledEstimate:
-    """K and its estimated errors by meshes, coarse to fine.
+    """K and its estimated errors on a sequence of meshes, coarse to fine.
 
     Attributes
     ----------
@@ -65,26 +65,22 @@ class ScaledEstimate:
 
     usual: float
     believed: tuple[float, float]
-    meshes: list[MeshResult] = field(default_factory=list)
+    meshes: tuple[MeshResult, ...] = ()
     falls: tuple[float, float] | None = None
     """The range of q where each mesh follows the errors of the one before and has twice its elements."""
 
-    def add(self, found: MeshResult) -> None:
-        """By one more mesh."""
-        self.meshes.append(found)
-
-    def with_mesh(self, found: MeshResult) -> ScaledEstimate:
-        """What `add` makes of a copy."""
-        return replace(self, meshes=[*self.meshes, found])
+    def with_mesh(self, result: MeshResult) -> ScaledEstimate:
+        """Return a copy with the result of one more mesh."""
+        return replace(self, meshes=(*self.meshes, result))
 
     @property
     def levels(self) -> tuple[MeshLevel, ...]:
-        """The meshes."""
+        """The meshes, coarse to fine, with their K."""
         return tuple(m.level for m in self.meshes)
 
     @property
     def K_Nm_per_rad(self) -> float:
-        """By the finest mesh."""
+        """K of the finest mesh."""
         return self.meshes[-1].K_Nm_per_rad
 
     @property
@@ -115,12 +111,12 @@ class ScaledEstimate:
         return self.scale * self.meshes[-1].error
 
     def at_given_angle(self) -> EstimatedBounds:
-        """Of a K that is proportional to the energy: a mesh stores too much of it."""
+        """Return the bounds of a K that is proportional to the energy: a mesh stores too much energy."""
         K, error, doubt = self.K_Nm_per_rad, self.relative, self.meshes[-1].doubt
         return EstimatedBounds(K * (1 - error), K * (1 - 2 * error - doubt), K * (1 + doubt))
 
     def at_given_torque(self, missing: float = 0.0) -> EstimatedBounds:
-        """Of a 1/K that is proportional to the energy: a mesh stores too little of it.
+        """Return the bounds where 1/K is proportional to the energy: a mesh stores too little energy.
 
         `missing` bounds, relative, what it lacks besides, such as load that is left out.
         """
@@ -136,7 +132,7 @@ class ScaledEstimate:
         method: str,
         shortfall: Shortfall,
     ) -> Stiffness:
-        """By these meshes; not guaranteed: the lower end is an estimate, curved edges only follow fillets."""
+        """Return the stiffness with these bounds. They are estimates: curved edges only follow fillets."""
         return Stiffness(
             K_Nm_per_rad=bounds.K,
             lower_Nm_per_rad=bounds.lower,

@@ -20,32 +20,32 @@ class ToleranceError(ComputationError):
         super().__init__(f"{what}: {shortfall}")
 
 
-def settled(found: Stiffness) -> Stiffness:
-    """A stiffness within the tolerance that was asked for.
+def settled(K: Stiffness) -> Stiffness:
+    """Return the stiffness, if it is within the tolerance that was asked for.
 
     Raises
     ------
     ToleranceError : it is not.
     """
-    if found.shortfall:
-        raise ToleranceError(f"K is known to ± {found.half_width:.2g} only", found.shortfall)
-    return found
+    if K.shortfall:
+        raise ToleranceError(f"K is known to ± {K.half_width:.2g} only", K.shortfall)
+    return K
 
 
-def settled_peak(found: StressPeak) -> StressPeak:
-    """A peak that stays within its tolerance on finer meshes: it has no bounds to say how far it may move.
+def settled_peak(peak: StressPeak) -> StressPeak:
+    """Return the peak, if it is within its tolerance; a peak has no bounds that say how far it may move.
 
     Raises
     ------
     ToleranceError : nobody knows.
     """
-    if found.shortfall:
-        raise ToleranceError("the peak stress may still change", found.shortfall)
-    return found
+    if peak.shortfall:
+        raise ToleranceError("the peak stress may still change", peak.shortfall)
+    return peak
 
 
 def missing_because(fault: FlexsplineError | MemoryError) -> Shortfall:
-    """Of a figure that is missing for this fault."""
+    """Return the reason of a figure that is missing because of this fault."""
     return Shortfall(_words(fault), _is_of_the_machine(fault))
 
 
@@ -73,6 +73,6 @@ def largest_mesh(elements: int, most: int) -> Shortfall:
 
 
 def last_mesh(meshes: int) -> Shortfall:
-    """So many meshes are solved and no more."""
+    """The given number of meshes is solved, and there are no more."""
     solved = "1 mesh" if meshes == 1 else f"{meshes} meshes"
     return Shortfall(f"no finer mesh is made of this part for this load case, after {solved}")

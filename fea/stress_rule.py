@@ -25,7 +25,7 @@ to 20 %, the others by 1.4 % at most. A solid mesh, whose nodes average over edg
 
 
 class Largest(Protocol):
-    """The largest von Mises stress [MPa] of points so far from every sharp edge and patch edge [mm].
+    """Returns the largest von Mises stress [MPa] farther than a distance [mm] from sharp and patch edges.
 
     `within`: of those no farther than this from the peak's place [mm]. None where no point is.
     """

@@ -12,7 +12,7 @@ SuperLU's 20. Solids of 5 200 to 20 300 take 0.06 to 0.28 s with either, one of 
 
 
 def superlu(matrix: csr_matrix, panel: int) -> SuperLU:
-    """The factors; RuntimeError, its word for an exactly singular matrix."""
+    """Return SuperLU's factors; it raises RuntimeError for an exactly singular matrix."""
     return splu(
         csc_matrix(matrix.T),  # the same matrix, and by columns already
         permc_spec="MMD_AT_PLUS_A",

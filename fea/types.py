@@ -75,12 +75,12 @@ class TetMesh:
 
     @property
     def elements(self) -> int:
-        """How many."""
+        """Number of elements."""
         return len(self.cells)
 
     @property
     def shortest_edge_mm(self) -> float:
-        """Between corner nodes."""
+        """Shortest edge between corner nodes."""
         return shortest_edge_mm(self.nodes, self.cells[:, :4])
 
 
@@ -135,7 +135,7 @@ class StressPeak:
     """What the part has and the body solved has not; "" of nothing. The part's stress is higher there."""
 
     def times(self, factor: float) -> StressPeak:
-        """The same under `factor` times the load."""
+        """Return the peak under `factor` times the load."""
         twice = self.mises_at_twice_MPa
         return replace(
             self,
@@ -165,7 +165,7 @@ class SolidField:
 
 @dataclass(frozen=True)
 class MeshLevel:
-    """One mesh of a refinement sequence and what it gave.
+    """One mesh of a refinement sequence and its K.
 
     Attributes
     ----------
@@ -184,7 +184,7 @@ class MeshLevel:
     residual: float | None = None
 
     def times(self, factor: float) -> MeshLevel:
-        """As `Stiffness.times`."""
+        """Return the level for a Young's modulus `factor` times as large."""
         check = self.K_check_Nm_per_rad
         return replace(
             self,
@@ -229,7 +229,7 @@ class Stiffness:
 
     @property
     def bounds_Nm_per_rad(self) -> tuple[float, float]:
-        """Lower and upper."""
+        """Lower and upper bound."""
         return self.lower_Nm_per_rad, self.upper_Nm_per_rad
 
     @property
@@ -243,7 +243,7 @@ class Stiffness:
         return self.width_Nm_per_rad / (2 * self.K_Nm_per_rad)
 
     def times(self, factor: float) -> Stiffness:
-        """Of a body whose Young's modulus is so many times as large."""
+        """Return the stiffness of the same body with a Young's modulus `factor` times as large."""
         proven = self.proven_Nm_per_rad
         return replace(
             self,
@@ -256,6 +256,6 @@ class Stiffness:
 
 
 def shortest_edge_mm(points: np.ndarray, cells: np.ndarray) -> float:
-    """Of simplices: `cells` (m, k) number the corners among `points` [mm]."""
+    """Return the shortest edge of simplices; `cells` (m, k) number the corners among `points` [mm]."""
     first, second = np.triu_indices(cells.shape[1], 1)
     return float(np.linalg.norm(points[cells[:, first]] - points[cells[:, second]], axis=2).min())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from flexspline.geometry.listed import joined
@@ -76,20 +76,20 @@ def beside(
     A level of more digits is called by its name. `step` is the smallest that counts, `low` and `high` the
     ends of all; with `zero`, 0 is below `low`.
     """
-    found = []
+    ranges = []
     if low <= level <= high or (zero and level == 0):
         few = f"{level:.{DIGITS}g}"
-        found.append(f"{few} ({name})" if float(few) == level else f"exactly {name}")
+        ranges.append(f"{few} ({name})" if float(few) == level else f"exactly {name}")
     under = min(step_down(level, step), high)
     if zero and level >= step and under < LENGTH_mm.low:
-        found.append("0")
+        ranges.append("0")
     elif zero and level >= step:
-        found.append(from_zero(under))
+        ranges.append(from_zero(under))
     elif (part := lengths(low, under)) is not None:
-        found.append(part)
+        ranges.append(part)
     if (part := lengths(max(step_up(level, step), low), high)) is not None:
-        found.append(part)
-    return joined(found, "or")
+        ranges.append(part)
+    return joined(ranges, "or")
 
 
 def outside(holes: Sequence[Interval], low: float, high: float) -> list[Interval]:
@@ -111,3 +111,14 @@ def _rounded(value: float, digits: int, up: bool) -> str:
     last = Decimal(1).scaleb(exact.adjusted() - digits + 1)
     cut = exact.quantize(last, ROUND_CEILING if up else ROUND_FLOOR)
     return f"{float(cut):.{digits}g}"
+
+
+def last_that(holds: Callable[[float], bool], inside: float, outside: float, width: float) -> float:
+    """The value farthest from `inside` towards `outside` for which a condition holds, to within `width`.
+
+    It holds at `inside`, not at `outside`, and changes once between them.
+    """
+    while abs(outside - inside) > width:
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if holds(middle) else (inside, middle)
+    return inside

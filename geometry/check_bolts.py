@@ -46,25 +46,17 @@ def bolt_faults(
             on_circle := _room_on(circle, n, inner[1], outer[1], alone, root)
         ):
             holes, land = on_circle, f"{land} on bolt_circle_diameter_mm = {circle:g}"
-        verb = "give a number" if hole is None else "must be"
-        needs = f"bolt_count = {n} needs it; " if hole is None else ""
-        yield DesignError(
-            prefix + "bolt_hole_diameter_mm",
-            MISSING if hole is None else hole,
-            f"{needs}{verb} {holes} mm to fit between {land}{cut_off}",
-        )
+        reason = f"{holes} mm to fit between {land}{cut_off}"
+        yield _refused(prefix + "bolt_hole_diameter_mm", hole, n, reason)
         return
     low = max(0.0, hole - root) if alone else above(inner[1] + hole)
     high = below(outer[1] - hole)
     if circle is None or not low - GAP_mm < circle < high + GAP_mm:
-        verb = "give a number" if circle is None else "must be"
-        needs = f"bolt_count = {n} needs it; " if circle is None else ""
-        yield DesignError(
-            prefix + "bolt_circle_diameter_mm",
-            MISSING if circle is None else circle,
-            f"{needs}{verb} {lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = "
-            f"{hole:g} stay between {land}{cut_off}",
+        reason = (
+            f"{lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = {hole:g} stay between "
+            f"{land}{cut_off}"
         )
+        yield _refused(prefix + "bolt_circle_diameter_mm", circle, n, reason)
     elif pitch(circle, n) <= hole + GAP_mm:
         smaller = lengths(0, below(pitch(circle, n)), 4)
         also = f"; {n} holes take a diameter {smaller} mm" if smaller else ""
@@ -74,6 +66,13 @@ def bolt_faults(
             f"must be from 0 to {_most_holes(circle, hole)}: beyond, holes of bolt_hole_diameter_mm = "
             f"{hole:g} touch on bolt_circle_diameter_mm = {circle:g}{also}",
         )
+
+
+def _refused(key: str, value: float | None, count: int, reason: str) -> DesignError:
+    """A diameter that is missing or does not fit; `reason` begins with those that do."""
+    if value is None:
+        return DesignError(key, MISSING, f"bolt_count = {count} needs it; give a number {reason}")
+    return DesignError(key, value, f"must be {reason}")
 
 
 def _room_on(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf, pi, radians
 
-from flexspline.geometry.bounds import beside, span
+from flexspline.geometry.bounds import beside, last_that, span
 from flexspline.geometry.check_flexspline import thickest_ring
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
@@ -31,11 +31,7 @@ def ring_ends(design: Design) -> tuple[float, float]:
     margin = 1e-6 * gear.module_mm  # below the digits in which the ends are told
     low, high = f.wall_radius, pitch - land - margin
     if _gap(design, low) < land:
-        inside, outside = high, low
-        while inside - outside > margin:
-            middle = (inside + outside) / 2
-            inside, outside = (middle, outside) if _gap(design, middle) > land else (inside, middle)
-        low = inside
+        low = last_that(lambda r: _gap(design, r) > land, high, low, margin)
     return low - f.inner_radius, high - f.inner_radius
 
 
@@ -88,15 +84,16 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
         )
         return
     if _land(design, radians(gear.pressure_angle_deg)) < land:
-        small, large = PRESSURE_ANGLE_deg.low, gear.pressure_angle_deg
-        while large - small > 1e-4:  # degrees: the end is told in six digits
-            middle = (small + large) / 2
-            pointed = _land(design, radians(middle)) < land
-            small, large = (small, middle) if pointed else (middle, large)
+        largest = last_that(
+            lambda angle: _land(design, radians(angle)) >= land,
+            PRESSURE_ANGLE_deg.low,
+            gear.pressure_angle_deg,
+            1e-4,  # degrees: the end is told in six digits
+        )
         yield DesignError(
             "gear.pressure_angle_deg",
             gear.pressure_angle_deg,
-            f"must be {span(PRESSURE_ANGLE_deg.low, small)} for teeth to be drawn: beyond, they are "
+            f"must be {span(PRESSURE_ANGLE_deg.low, largest)} for teeth to be drawn: beyond, they are "
             f"pointed below the tip circle, radius {tip_radius(design):.4g} mm",
         )
 

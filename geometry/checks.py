@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
+from functools import partial
 from math import cos, radians
 
-from flexspline.geometry.bounds import below, span
+from flexspline.geometry.bounds import below, last_that, span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
 from flexspline.geometry.check_tooth import least_module_mm, ring_ends, tooth_faults
@@ -32,8 +33,8 @@ from flexspline.geometry.ranges import TEETH, LENGTH_mm
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
 
-HALVINGS = 20
-"""Of a range of diameters, to its millionth: its ends are told in four digits."""
+RANGE_SHARE = 1e-6
+"""Error of a range's end, as a share of the range: ends are told in four digits."""
 
 
 def check(design: Design) -> None:
@@ -63,7 +64,9 @@ def _faults(design: Design) -> Iterator[DesignError]:
 
 
 def _name_faults(design: Design) -> Iterator[DesignError]:
-    names = {f"material.{key}.name": each.name for key, each in design.material.stated.items()}
+    names = {
+        f"material.{key}.name": material.name for key, material in design.material.stated.items()
+    }
     names["name"] = design.name
     for key, text in names.items():
         if any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text):
@@ -152,10 +155,7 @@ def _largest_allowed(design: Design, low: float, high: float) -> float:
     """The largest inner diameter up to `high` that `_may_have` [mm]; `high` where it has not even `low`."""
     if low > high or _may_have(design, high) or not _may_have(design, low):
         return high
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _may_have(design, middle) else (low, middle)
-    return low
+    return last_that(partial(_may_have, design), low, high, RANGE_SHARE * (high - low))
 
 
 def _clearance_faults(design: Design) -> Iterator[DesignError]:

@@ -11,6 +11,8 @@ MISSING = object()
 """The value of a key that is not there."""
 ARTEFACT = 14
 """Letters of a float: longer ones, such as 0.30000000000000004, are rounding and not what a person wrote."""
+LONGEST_VALUE = 60
+"""Letters of a value that an error message repeats, at most."""
 FIXED = range(-6, 7)
 """Powers of ten that are written out; beyond, zeros have to be counted."""
 
@@ -64,7 +66,7 @@ class DesignError(FlexsplineError, ValueError):
         self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
         also = f"; and {others[0]}" if others else ""
         if len(others) > 1:
-            keys = ", ".join(one_line(each.key) for each in others[:LISTED_FAULTS])
+            keys = ", ".join(one_line(fault.key) for fault in others[:LISTED_FAULTS])
             also = (
                 f" (and {len(others)} more faults: {keys}{', …' * (len(others) > LISTED_FAULTS)})"
             )
@@ -73,8 +75,8 @@ class DesignError(FlexsplineError, ValueError):
     @property
     def alone(self) -> str:
         """This fault without the others."""
-        found = "is missing" if self.value is MISSING else f"= {short(self.value)}"
-        return f"{one_line(self.key)} {found}: {one_line(self.reason)}"
+        given = "is missing" if self.value is MISSING else f"= {short(self.value)}"
+        return f"{one_line(self.key)} {given}: {one_line(self.reason)}"
 
 
 class DesignFileError(DesignError):
@@ -94,23 +96,23 @@ class GeometryError(ComputationError):
     """The CAD kernel did not produce the solid that the design describes."""
 
 
-def short(value: object, limit: int = 60) -> str:
+def short(value: object) -> str:
     """A value as one short printable line."""
     if isinstance(value, bool):
         text = str(value).lower()  # as TOML writes it
-    elif isinstance(value, int) and abs(value) >= 10**limit:
-        text = "a whole number of more than 60 digits"  # str() refuses thousands of digits
+    elif isinstance(value, int) and abs(value) >= 10**LONGEST_VALUE:
+        text = f"a whole number of more than {LONGEST_VALUE} digits"  # str() refuses thousands of digits
     elif isinstance(value, dict):
         text = "{a table}"
     elif isinstance(value, list | tuple):
         text = f"[a list of {len(value)}]"
     elif isinstance(value, str):
-        text = f'"{value[: limit + 1]}"'
+        text = f'"{value[: LONGEST_VALUE + 1]}"'
     else:
         text = str(value)
         if isinstance(value, float) and ("e" in text or len(text) > ARTEFACT):
             text = plain_number(value)
-    return one_line(text, limit)
+    return one_line(text, LONGEST_VALUE)
 
 
 def plain_number(value: float, digits: int = 12) -> str:
@@ -135,7 +137,7 @@ def plain_number(value: float, digits: int = 12) -> str:
 def readable(text: str) -> str:
     """Text that UTF-8 can hold: the bytes of a file's name that the locale could not read, read as UTF-8."""
     return _UNREAD.sub(
-        lambda found: found[0].encode("utf-8", "surrogateescape").decode("utf-8", "replace"), text
+        lambda match: match[0].encode("utf-8", "surrogateescape").decode("utf-8", "replace"), text
     )
 
 

@@ -27,13 +27,13 @@ def triangles_of(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
     from OCP.TopLoc import TopLoc_Location
 
     where = TopLoc_Location()
-    found = BRep_Tool.Triangulation_s(face.wrapped, where)
-    if found is None:
+    mesh = BRep_Tool.Triangulation_s(face.wrapped, where)
+    if mesh is None:
         raise GeometryError("the CAD kernel could not triangulate a face")
     move = where.Transformation()
-    nodes = (found.Node(i + 1).Transformed(move) for i in range(found.NbNodes()))
+    nodes = (mesh.Node(i + 1).Transformed(move) for i in range(mesh.NbNodes()))
     vertices = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
-    triangles = np.array([found.Triangle(i + 1).Get() for i in range(found.NbTriangles())]) - 1
+    triangles = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())]) - 1
     if face.wrapped.Orientation() == TopAbs_REVERSED:
         triangles = triangles[:, ::-1]
     return vertices, triangles
@@ -45,8 +45,8 @@ def inside_point(face: cq.Face) -> np.ndarray:
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.TopLoc import TopLoc_Location
 
-    found = BRep_Tool.Triangulation_s(face.wrapped, TopLoc_Location())
-    corners = [found.UVNode(i) for i in found.Triangle(1).Get()]
+    mesh = BRep_Tool.Triangulation_s(face.wrapped, TopLoc_Location())
+    corners = [mesh.UVNode(i) for i in mesh.Triangle(1).Get()]
     u, v = (sum(c.Coord()[k] for c in corners) / 3 for k in (0, 1))
     p = BRepAdaptor_Surface(face.wrapped).Value(u, v)
     return np.array([[p.X(), p.Y(), p.Z()]])

@@ -109,15 +109,15 @@ def location_of(key: str) -> Location:
 def _reach(tables: dict[str, Any], key: str, value: object = None) -> tuple[dict[str, Any], str]:
     """The table that holds a key, and the key's last name; `value`: what it shall hold, for the error."""
     *path, last = location_of(key)
-    here: Any = tables
+    table: Any = tables
     for depth, part in enumerate(path, 1):
         if tuple(path[:depth]) in WITH_DEFAULTS:
-            here = here.setdefault(part, {})
+            table = table.setdefault(part, {})
             continue
         try:
-            here = here[part]
+            table = table[part]
         except (KeyError, IndexError, TypeError):
             raise DesignError(key, value, "no such key in the design file") from None
-    if not (isinstance(here, dict) and isinstance(last, str)):
+    if not (isinstance(table, dict) and isinstance(last, str)):
         raise DesignError(key, value, "no such key in the design file")
-    return here, last
+    return table, last

@@ -16,10 +16,10 @@ def joined(words: Iterable[str], last: str) -> str:
     >>> joined(["bore", "boss"], "and"), joined(["1", "2", "3"], "or")
     ('bore and boss', '1, 2 or 3')
     """
-    every = list(words)
-    if len(every) > 1:
-        every[:-1] = [", ".join(every[:-1])]
-    return f" {last} ".join(every)
+    texts = list(words)
+    if len(texts) > 1:
+        texts[:-1] = [", ".join(texts[:-1])]
+    return f" {last} ".join(texts)
 
 
 def listed(words: Iterable[object], what: str) -> str:
@@ -30,7 +30,7 @@ def listed(words: Iterable[object], what: str) -> str:
     >>> listed(range(1, 193), "cycles")
     '1, 2, 3, … 192 (192 cycles)'
     """
-    every = [str(w) for w in words]
-    if len(every) <= MOST_ENTRIES:
-        return ", ".join(every)
-    return f"{', '.join(every[:FIRST_ENTRIES])}, … {every[-1]} ({len(every)} {what})"
+    texts = [str(w) for w in words]
+    if len(texts) <= MOST_ENTRIES:
+        return ", ".join(texts)
+    return f"{', '.join(texts[:FIRST_ENTRIES])}, … {texts[-1]} ({len(texts)} {what})"

@@ -131,10 +131,10 @@ def _what(refused: DesignError) -> str:
     noun = re.match(r"(give|must be) a (whole )?number", refused.reason)
     if noun is None:
         return ""
-    found = re.search(r", not [\w ]+(; write .*)?$", refused.reason)
-    if found is None and refused.value is not MISSING:
+    ending = re.search(r", not [\w ]+(; write .*)?$", refused.reason)
+    if ending is None and refused.value is not MISSING:
         return ""
-    return f"{noun[0]}{found[0] if found else ''}; it "
+    return f"{noun[0]}{ending[0] if ending else ''}; it "
 
 
 def _nearest(value: object, ends: list[float]) -> list[float]:

@@ -52,24 +52,24 @@ def shaft_meridian(s: Shaft) -> Meridian:
 
 def with_narrow_seat(outline: Meridian, share: float) -> Meridian:
     """The same body with a `seat` of that share (below 1) of its width, in the middle of the old one."""
-    found: list[Segment] = []
+    segments: list[Segment] = []
     for s in outline.segments:
         if s.patch != "seat":
-            found.append(s)
+            segments.append(s)
             continue
         at = s.at(np.array([0.0, (1 - share) / 2, (1 + share) / 2, 1.0]))
         a, b, c, d = (pair(p) for p in at)
-        found += [Segment(a, b), Segment(b, c, patch="seat"), Segment(c, d)]
-    return Meridian(tuple(found), outline.cuts)
+        segments += [Segment(a, b), Segment(b, c, patch="seat"), Segment(c, d)]
+    return Meridian(tuple(segments), outline.cuts)
 
 
 def with_mount_from(outline: Meridian, radius_mm: float) -> Meridian:
     """The same body whose `mount`, a flat face, is held only from a radius outwards."""
-    found: list[Segment] = []
+    segments: list[Segment] = []
     for s in outline.segments:
         if s.patch == "mount" and s.start[0] < radius_mm < s.end[0]:
             edge = (radius_mm, s.start[1])
-            found += [Segment(s.start, edge), Segment(edge, s.end, patch="mount")]
+            segments += [Segment(s.start, edge), Segment(edge, s.end, patch="mount")]
         else:
-            found.append(s)
-    return Meridian(tuple(found), outline.cuts)
+            segments.append(s)
+    return Meridian(tuple(segments), outline.cuts)

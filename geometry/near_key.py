@@ -29,5 +29,5 @@ def nearest_key(key: str, known: Iterable[str]) -> str | None:
         and len(whole := [k for k in known if k.startswith(f"{words}_") and k.endswith(unit)]) == 1
     ):
         return whole[0]  # a word is missing
-    found = get_close_matches(key[:LONGEST], known, n=1, cutoff=LEAST_SIMILARITY)
-    return found[0] if found else None
+    closest = get_close_matches(key[:LONGEST], known, n=1, cutoff=LEAST_SIMILARITY)
+    return closest[0] if closest else None

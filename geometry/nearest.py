@@ -37,7 +37,7 @@ def nearest_triangles(
     facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing /= np.maximum(np.linalg.norm(facing, axis=1), ABOVE_ZERO)[:, None]
     step = max(1, PAIRS_AT_ONCE // len(triangles))
-    found = np.full(len(points), -1)
+    nearest = np.full(len(points), -1)
     agrees = np.zeros(len(points), bool)
     for start in range(0, len(points), step):
         p = points[start : start + step]
@@ -51,6 +51,6 @@ def nearest_triangles(
         score = distance + 1e-6 * (1 - agree) + np.where(agree > FACING, 0.0, 1e3 * reach)
         order = np.lexsort((score, i))
         rows, first = np.unique(i[order], return_index=True)
-        found[start + rows] = t[order][first]
+        nearest[start + rows] = t[order][first]
         agrees[start + rows] = agree[order][first] > FACING
-    return found, agrees
+    return nearest, agrees

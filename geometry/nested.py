@@ -84,11 +84,11 @@ def _moved_steps(part: Part, shape: Shaft) -> tuple[ShaftSegment, ...]:
     pieces: list[ShaftSegment] = []
     outer = [0.0, *(s.outer_diameter_mm for s in shape.segment), 0.0]
     for before, segment, after in zip(outer, shape.segment, outer[2:], strict=False):
-        own = segment.outer_diameter_mm
-        low, high = (shape.fillet_mm if o > own + SAME_mm else 0.0 for o in (before, after))
+        size = segment.outer_diameter_mm
+        low, high = (shape.fillet_mm if o > size + SAME_mm else 0.0 for o in (before, after))
         for length, diameter in (
             (low, before),
-            (segment.length_mm - low - high, own),
+            (segment.length_mm - low - high, size),
             (high, after),
         ):
             if length > SAME_mm:
@@ -111,15 +111,15 @@ def _holes_may_deepen(part: Part, shape: Shaft) -> bool:
 
 def _joined(pieces: list[ShaftSegment], to_first: float) -> tuple[ShaftSegment, ...]:
     """Neighbours of the same section as one; so many join the first, in which the holes are."""
-    found = pieces[:1]
+    joined = pieces[:1]
     for number, (before, piece) in enumerate(pairwise(pieces)):
         same = (
             abs(before.outer_diameter_mm - piece.outer_diameter_mm) <= SAME_mm
             and abs(before.inner_diameter_mm - piece.inner_diameter_mm) <= SAME_mm
         )
-        if same and (len(found) > 1 or number < to_first):
-            length = found[-1].length_mm + piece.length_mm
-            found[-1] = found[-1].model_copy(update={"length_mm": length})
+        if same and (len(joined) > 1 or number < to_first):
+            length = joined[-1].length_mm + piece.length_mm
+            joined[-1] = joined[-1].model_copy(update={"length_mm": length})
         else:
-            found.append(piece)
-    return tuple(found)
+            joined.append(piece)
+    return tuple(joined)

@@ -33,13 +33,13 @@ def _torques() -> Iterator[tuple[str, str, float]]:
     for force, newtons in _FORCES.items():
         for arm in _ARMS:
             metric = "N" in force
-            said = f"{arm}·{force}" if force in ("lbf", "ozf") else f"{force}·{arm}"
+            name = f"{arm}·{force}" if force in ("lbf", "ozf") else f"{force}·{arm}"
             for short in {force} if metric else {force, force.removesuffix("f")}:
                 spellings = [f"{short}{arm}", f"{short}_{arm}"]
                 if not metric:
                     spellings += [f"{arm}{short}", f"{arm}_{short}"]
                 for spelling in spellings:
-                    yield spelling, said, newtons * _LENGTHS[arm] / 1e3
+                    yield spelling, name, newtons * _LENGTHS[arm] / 1e3
 
 
 _ALIKE: tuple[Mapping[str, float], ...] = (
@@ -98,12 +98,12 @@ def other_unit(key: str, known: Iterable[str]) -> OtherUnit | None:
 
 
 def _how(unit: str, factor: float) -> str:
-    said, over = _SAID.get(unit, unit), round(1 / factor)
+    name, over = _SAID.get(unit, unit), round(1 / factor)
     if over >= 1 and abs(factor * over - 1) < ROUND:
         return (
-            f"a value in {said} stays as it is"
+            f"a value in {name} stays as it is"
             if over == 1
-            else f"divide a value in {said} by {over}"
+            else f"divide a value in {name} by {over}"
         )
     by = f"{round(factor)}" if abs(factor - round(factor)) < ROUND * factor else f"{factor:.6g}"
-    return f"multiply a value in {said} by {by}"
+    return f"multiply a value in {name} by {by}"

@@ -5,7 +5,7 @@ Plain numbers: the CAD solid revolves or extrudes them, the axisymmetric solver 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import acos, atan2, hypot, pi
 
@@ -91,9 +91,9 @@ class Segment:
         a0 = atan2(*(start - c)[::-1])
         middle = a0 + self.sweep / 2
         v = rz - c
-        off = (np.arctan2(v[:, 1], v[:, 0]) - middle + pi) % (2 * pi) - pi
+        turn = (np.arctan2(v[:, 1], v[:, 0]) - middle + pi) % (2 * pi) - pi
         half = abs(self.sweep) / 2
-        angle = middle + np.clip(off, -half, half)
+        angle = middle + np.clip(turn, -half, half)
         return c + self.radius * np.stack([np.cos(angle), np.sin(angle)], -1)
 
     @property
@@ -127,21 +127,21 @@ class Meridian:
 
     def cuts_within(self, reach: float) -> tuple[Segment, ...]:
         """The cuts as far as `reach` [mm] from the patch edges that they start from."""
-        found: list[Segment] = []
+        cuts: list[Segment] = []
         for cut in self.cuts:
             first, last = (
                 any(distance(end, p) < SAME_mm for p in self.patch_edges)
                 for end in (cut.start, cut.end)
             )
             if not (first or last) or reach * (first + last) >= cut.length:
-                found.append(cut)
+                cuts.append(cut)
                 continue
             (r1, z1), (r2, z2) = cut.at(np.array([reach, cut.length - reach]) / cut.length)
             if first:
-                found.append(Segment(cut.start, (float(r1), float(z1))))
+                cuts.append(Segment(cut.start, (float(r1), float(z1))))
             if last:
-                found.append(Segment((float(r2), float(z2)), cut.end))
-        return tuple(found)
+                cuts.append(Segment((float(r2), float(z2)), cut.end))
+        return tuple(cuts)
 
     @property
     def volume(self) -> float:
@@ -217,3 +217,12 @@ def _chords(s: Segment, chord_error: float) -> int:
 def distance(a: Point, b: Point) -> float:
     """Between two points."""
     return hypot(a[0] - b[0], a[1] - b[1])
+
+
+def distinct(values: Iterable[float]) -> list[float]:
+    """Return lengths [mm], rising, without those within SAME_mm of the one before."""
+    kept: list[float] = []
+    for value in sorted(values):
+        if not kept or value > kept[-1] + SAME_mm:
+            kept.append(value)
+    return kept

@@ -38,8 +38,8 @@ def refusal(faults: Iterable[ErrorDetails], words: FileWords, kind: type[Refused
 
     Unknown keys come first: a misspelt key is also a missing one, and its own name says more.
     """
-    found = sorted(faults, key=lambda e: e["type"] != "extra_forbidden")
-    first, *others = (_refused(each, words, kind) for each in found)
+    ordered = sorted(faults, key=lambda e: e["type"] != "extra_forbidden")
+    first, *others = (_refused(fault, words, kind) for fault in ordered)
     return kind(first.key, first.value, first.reason, others)
 
 
@@ -71,7 +71,7 @@ def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
     """What is wrong with the tables of a design file."""
     kind = kind_of(data)
     words = FileWords(dotted, partial(_allowed, kind=kind), partial(_unknown, kind=kind))
-    return refusal((_of_a_key(each, data) for each in error.errors()), words, DesignError)
+    return refusal((_of_a_key(fault, data) for fault in error.errors()), words, DesignError)
 
 
 def _of_a_key(e: ErrorDetails, data: Mapping[str, Any]) -> ErrorDetails:
@@ -79,8 +79,8 @@ def _of_a_key(e: ErrorDetails, data: Mapping[str, Any]) -> ErrorDetails:
     if e["type"] not in ("union_tag_invalid", "union_tag_not_found"):
         return {**e, "loc": without_tag(e["loc"])}
     value = data["flexspline"].get("kind", MISSING)
-    found = "missing" if value is MISSING else "literal_error"
-    return {**e, "type": found, "loc": KIND, "input": value}
+    error_type = "missing" if value is MISSING else "literal_error"
+    return {**e, "type": error_type, "loc": KIND, "input": value}
 
 
 def _allowed(location: Location, kind: str | None) -> str:
@@ -108,8 +108,8 @@ def _unknown(location: Location, kind: str | None) -> str:
         others = {other: keys_of(table, other) for other in KINDS if other != kind}
         for other, theirs in others.items():
             if key in theirs:
-                own = [k for k in known if k not in theirs]
-                return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
+                of_kind = [k for k in known if k not in theirs]
+                return f'belongs to a {other}; kind = "{kind}" takes {", ".join(of_kind)}'
     if not table and key == "design":
         return "is a key of a study file: run `flexspline study` on it"
     return unknown_key(key, known, f"[{dotted(table)}]" if table else "the design")

@@ -78,7 +78,7 @@ def ring_bending_stress_MPa(design: Design) -> float:
 def _root_radius(design: Design) -> Iterator[str]:
     gear, ring = design.gear, design.flexspline.ring_radius
     root = root_radius_mm(design)
-    apart, allowed = abs(root - ring), ROOT_TOLERANCE * gear.module_mm
+    difference, allowed = abs(root - ring), ROOT_TOLERANCE * gear.module_mm
     if hint := module_hint(design):
         yield f"tooth-root radius {root:.4g} mm, ring's outer radius {ring:.4g} mm: {hint}"
     elif root < design.flexspline.inner_radius:
@@ -87,11 +87,11 @@ def _root_radius(design: Design) -> Iterator[str]:
             f"radius is {design.flexspline.inner_radius:.4g} mm: gear.module_mm, gear.teeth_flexspline or "
             "flexspline.inner_diameter_mm is wrong"
         )
-    elif apart > allowed:
+    elif difference > allowed:
         yield (
             f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm, but the ring's outer radius "
-            f"is {ring:.4g} mm: they differ by {apart:.3g} mm, and should by at most {ROOT_TOLERANCE} module "
-            f"= {allowed:.3g} mm{_fitting_ring(design, root)}"
+            f"is {ring:.4g} mm: they differ by {difference:.3g} mm, and should by at most {ROOT_TOLERANCE} "
+            f"module = {allowed:.3g} mm{_fitting_ring(design, root)}"
         )
 
 

@@ -16,13 +16,13 @@ def held_signals() -> Iterator[None]:
         return
     came: list[int] = []
     before = {
-        each: signal.signal(each, lambda number, _: came.append(number))
-        for each in (signal.SIGINT, signal.SIGTERM)
+        held: signal.signal(held, lambda number, _: came.append(number))
+        for held in (signal.SIGINT, signal.SIGTERM)
     }
     try:
         yield
     finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
+        for held, handler in before.items():
+            signal.signal(held, handler)
     if came:
         signal.raise_signal(came[0])

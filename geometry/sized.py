@@ -147,7 +147,7 @@ def _thin_walled(flexspline: TomlTable, first: TomlTable, pitch: float, why: Why
 def _scaled(table: TomlTable, location: Location, factor: float, was: float, why: Why) -> Any:
     """Lengths times a factor, all else as it is; `was`: the pitch radius that they belong to [mm]."""
     if isinstance(table, list):
-        return [_scaled(each, (*location, i), factor, was, why) for i, each in enumerate(table)]
+        return [_scaled(entry, (*location, i), factor, was, why) for i, entry in enumerate(table)]
     if not isinstance(table, dict):
         key = str(location[-1])
         if not key.endswith("_mm") or key == "edge_length_mm" or not table:

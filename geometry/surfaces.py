@@ -57,8 +57,8 @@ class HoleWall:
     patch: str = ""
 
     def project(self, points: np.ndarray) -> np.ndarray:
-        off = points[:, :2] - np.array(self.axis)
-        unit = off / np.maximum(np.linalg.norm(off, axis=1), ABOVE_ZERO)[:, None]
+        from_axis = points[:, :2] - np.array(self.axis)
+        unit = from_axis / np.maximum(np.linalg.norm(from_axis, axis=1), ABOVE_ZERO)[:, None]
         return np.column_stack([np.array(self.axis) + self.radius * unit, points[:, 2]])
 
 
@@ -88,18 +88,18 @@ def sector_planes(sector_deg: float) -> list[Surface]:
 
 def part_surfaces(part: Part, sector_deg: float) -> list[Surface]:
     """Every surface that a face of the part may lie on; earlier ones win where two coincide."""
-    found: list[Surface] = sector_planes(sector_deg)
-    found += [Swept(s) for s in part.meridian.segments if not s.on_axis]
+    surfaces: list[Surface] = sector_planes(sector_deg)
+    surfaces += [Swept(s) for s in part.meridian.segments if not s.on_axis]
     if part.bolts is not None:
-        found += [HoleWall(centre, part.bolts.hole_radius) for centre in part.bolts.centres]
+        surfaces += [HoleWall(centre, part.bolts.hole_radius) for centre in part.bolts.centres]
     if isinstance(part.shape, Shaft):  # its holes may be blind
-        found.append(Plane((0, 0, part.hole_depth), (0, 0, 1)))
+        surfaces.append(Plane((0, 0, part.hole_depth), (0, 0, 1)))
     if part.keyway is not None:
         slot = part.keyway
-        found += [
+        surfaces += [
             Plane((slot.floor, 0, 0), (1, 0, 0)),
             Plane((0, slot.half_width, 0), (0, 1, 0)),
             Plane((0, -slot.half_width, 0), (0, 1, 0)),
             Plane((0, 0, slot.start), (0, 0, 1)),
         ]
-    return found
+    return surfaces

@@ -129,8 +129,8 @@ def _surface_of(vertices: np.ndarray, inside: np.ndarray, surfaces: list[Surface
     if not near:
         where = np.round(vertices.mean(axis=0), 3).tolist()
         raise GeometryError(f"a CAD face around {where} mm lies on no surface of the design")
-    off = [np.abs(surfaces[i].project(inside) - inside).max() for i in near]
-    first = next(k for k, d in enumerate(off) if d < min(off) + ON_SURFACE_MM)
+    distances = [np.abs(surfaces[i].project(inside) - inside).max() for i in near]
+    first = next(k for k, d in enumerate(distances) if d < min(distances) + ON_SURFACE_MM)
     return near[first]
 
 

@@ -79,24 +79,24 @@ def _lines(
     """The table's own keys, then the tables below it, as TOML wants them; `hidden` as comments."""
     for key, value in table.items():
         if not isinstance(value, dict | list):
-            off = "# " if optional or (*location, key) in hidden else ""
-            setting = f"{off}{key} = {_toml(value)}"
+            comment = "# " if optional or (*location, key) in hidden else ""
+            setting = f"{comment}{key} = {_toml(value)}"
             reason = why.get((*location, key))
             assumed = f"; assumed: {reason}" if reason else ""
             yield f"{setting:<36} # {_meaning((*location, key), kind)}{assumed}"
     for key, value in table.items():
         below = (*location, key)
-        off = "# " if optional or below in hidden else ""
+        comment = "# " if optional or below in hidden else ""
         name = ".".join(str(part) for part in below)
         if isinstance(value, dict):
             if any(not isinstance(v, dict) for v in value.values()):  # [material] holds tables only
                 yield ""
-                yield f"{off + f'[{name}]':<36} # {_about(below, kind)}"
-            yield from _lines(below, value, kind, hidden, bool(off), why)
+                yield f"{comment + f'[{name}]':<36} # {_about(below, kind)}"
+            yield from _lines(below, value, kind, hidden, bool(comment), why)
         elif isinstance(value, list):
             for i, item in enumerate(value):
-                yield f"{off + f'[[{name}]]':<36} # {_about((*below, i), kind)}"
-                yield from _lines((*below, i), item, kind, hidden, bool(off), why)
+                yield f"{comment + f'[[{name}]]':<36} # {_about((*below, i), kind)}"
+                yield from _lines((*below, i), item, kind, hidden, bool(comment), why)
 
 
 def _about(location: Location, kind: str) -> str:

@@ -68,11 +68,11 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
 
 def number_help(text: str) -> str:
     """What to write in place of text that holds a number, with a unit or without; "" of other text."""
-    found = _WITH_UNIT.fullmatch(text.strip())
-    if found is None:
+    match = _WITH_UNIT.fullmatch(text.strip())
+    if match is None:
         return ""
-    unit = ": numbers are written without unit, the key's name ends with it" if found[2] else ""
-    return f"; write {found[1]}{unit}" if unit else f"; write {found[1]} without quotation marks"
+    unit = ": numbers are written without unit, the key's name ends with it" if match[2] else ""
+    return f"; write {match[1]}{unit}" if unit else f"; write {match[1]} without quotation marks"
 
 
 def _twice(text: str, fault: ValueError) -> str:
@@ -91,8 +91,8 @@ def _twice(text: str, fault: ValueError) -> str:
 
 def _given(line: str) -> str:
     """The key that a line gives a value to, or its table's head; "" of other lines."""
-    found = _BEGIN.match(line)
-    return "" if found is None else found[1] or found[2]
+    match = _BEGIN.match(line)
+    return "" if match is None else match[1] or match[2]
 
 
 def _help(text: str, fault: ValueError) -> str:

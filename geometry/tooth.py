@@ -128,12 +128,12 @@ def _chords(psi: Callable[[float], float], low: float, high: float, allowed: flo
     Two places are compared, as the flank may have a kink or a turning point.
     """
     length = high - low
-    apart = (
+    deviations = (
         (low + part * length)
         * abs(psi(low + part * length) - (1 - part) * psi(low) - part * psi(high))
         for part in (0.5, 0.75)
     )
-    if max(apart) <= allowed:
+    if max(deviations) <= allowed:
         return [high]
     middle = (low + high) / 2
     return _chords(psi, low, middle, allowed) + _chords(psi, middle, high, allowed)

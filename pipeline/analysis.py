@@ -63,7 +63,7 @@ def stiffnesses(
     solved: Callable[[PartModel], None] = lambda part: None,
     begun: Callable[[], None] = lambda: None,
 ) -> Stiffnesses:
-    """All that `flexspline stiffness` answers, for the parts that are asked for.
+    """Solve all figures of `flexspline stiffness`, for the parts that are asked for.
 
     What fails is absent, with its reason in `missing`; the rest is there. `solved` is told each part
     after its K, by one of two threads. `begun` is called before the solves, and after this process has been
@@ -88,25 +88,26 @@ def stiffnesses(
         tasks.add_part("K_e", shaft_part)
     if flexspline and rim:
         tasks.add_rim(rim_part)
-    found = tasks.figures(begun)
+    figures = tasks.figures(begun)
     return Stiffnesses(
-        in_order(found.K),
-        found.peaks.get("wave_generator_peak"),
-        found.peaks.get("half_seat_peak"),
+        in_order(figures.K),
+        figures.peaks.get("wave_generator_peak"),
+        figures.peaks.get("half_seat_peak"),
         context.ring if flexspline else None,
-        found.missing,
+        figures.missing,
     )
 
 
 def run(
     context: AnalysisContext,
-    told: Callable[[str, SolidField], None] = lambda name, field: None,
+    on_field: Callable[[str, SolidField], None] = lambda name, field: None,
     begun: Callable[[], None] = lambda: None,
 ) -> RunResult:
-    """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
+    """Solve all of `flexspline run`: stiffnesses, three stress fields, backlash sum, whole gear.
 
-    A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `told` is given each of
-    `RunResult.fields` as soon as it is there, by one of two threads. `begun`: as of `stiffnesses`.
+    A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `on_field` is
+    given each of `RunResult.fields` as soon as it is there, by one of two threads. `begun`: as of
+    `stiffnesses`.
 
     Raises
     ------
@@ -120,24 +121,24 @@ def run(
         field = tried.get(name, make)
         if field is not None:
             fields[name] = field
-            told(name, field)
+            on_field(name, field)
 
     def under_torque(part: PartModel) -> None:
         solve(f"{part.name}_torque", lambda: torque_field(part))
 
-    found = stiffnesses(context, solved=under_torque, begun=begun)
-    found.require(design)
-    total = backlash_of(design, found)
+    result = stiffnesses(context, solved=under_torque, begun=begun)
+    result.require(design)
+    total = backlash_of(design, result)
     tried_gear = Attempts()
     with beside(context.progress, [lambda: tried_gear.get("gear", lambda: _gear(context))]) as rest:
         solve("wave_generator", lambda: ellipse_field(context.part("flexspline")))
         (gear,) = rest()
     fields = {name: fields[name] for name in STRESS_CASES if name in fields}  # whoever was first
-    found = replace(found, missing={**found.missing, **tried.missing, **tried_gear.missing})
+    result = replace(result, missing={**result.missing, **tried.missing, **tried_gear.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
-    limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)
+    limit = linear_limit(design, result.series_Nm_per_rad(design), peaks)
     seconds = dict(context.progress.seconds)
-    return RunResult(design, warnings(design), found, fields, total, limit, seconds, gear)
+    return RunResult(design, warnings(design), result, fields, total, limit, seconds, gear)
 
 
 def _gear(context: AnalysisContext) -> GearCurve:
@@ -153,6 +154,6 @@ def _gear(context: AnalysisContext) -> GearCurve:
         raise ComputationError(str(fault)) from None
 
 
-def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
-    """The four-term sum with the stiffnesses found."""
-    return backlash(design, found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad)
+def backlash_of(design: Design, result: Stiffnesses) -> Backlash:
+    """Return the four-term sum [arcsec] with these stiffnesses."""
+    return backlash(design, result.in_sum(design).K_Nm_per_rad, result.K_e.K_Nm_per_rad)

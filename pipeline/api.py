@@ -30,7 +30,7 @@ def stiffness(
     part: PartName = "flexspline",
     case: Literal["uniform"] | RimCase = "uniform",
 ) -> Stiffness:
-    """Torsional stiffness of a part with its error bounds.
+    """Return the torsional stiffness of a part with its error bounds [N·m/rad].
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
 
 
 def backlash(design: Design, K_b: float | None = None, K_e: float | None = None) -> Backlash:
-    """The four-term sum in arcsec; K_b, K_e [N·m/rad] of the flexspline and the shaft, by FE where not given.
+    """Return the four-term sum in arcsec; K_b, K_e [N·m/rad] of flexspline and shaft, by FE where not given.
 
     Raises
     ------
@@ -135,10 +135,10 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     The shaft's wind-up is 2T/K_e, as in table 2 of the article (0.5 N·m on 1.8e4 N·m/rad, 11.5″):
 
     >>> from flexspline import backlash, load_design
-    >>> found = backlash(load_design("examples/xb1-40.toml"), K_b=3.1e4, K_e=1.8e4)
-    >>> round(found.shaft_arcsec, 1)
+    >>> total = backlash(load_design("examples/xb1-40.toml"), K_b=3.1e4, K_e=1.8e4)
+    >>> round(total.shaft_arcsec, 1)
     11.5
-    >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
+    >>> total.total_arcsec > total.shaft_arcsec + total.flexspline_arcsec
     True
     """
     from flexspline.pipeline.backlash import backlash as sum_of_terms
@@ -156,7 +156,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
 
 
 def gear(design: Design) -> GearCurve:
-    """The whole gear with its wave generator locked: torque-angle curve, K1, K2, K3, lost motion.
+    """Solve the whole gear with its wave generator locked: torque-angle curve, K1, K2, K3, lost motion.
 
     Returns
     -------
@@ -174,8 +174,8 @@ def gear(design: Design) -> GearCurve:
     Teeth that come into contact one after another make it stiffen:
 
     >>> from flexspline import gear, load_design
-    >>> found = gear(load_design("examples/xb1-40.toml"))
-    >>> found.K1_Nm_per_rad < found.K2_Nm_per_rad < found.K3_Nm_per_rad
+    >>> curve = gear(load_design("examples/xb1-40.toml"))
+    >>> curve.K1_Nm_per_rad < curve.K2_Nm_per_rad < curve.K3_Nm_per_rad
     True
     """
     from flexspline.pipeline.analysis import analysis_context
@@ -187,7 +187,7 @@ def gear(design: Design) -> GearCurve:
 
 
 def sensitivity(design: Design) -> tuple[Slope, ...]:
-    """dK/dp of every length of both parts, the strongest first within a part; holes are left out.
+    """Return dK/dp of every length of both parts, the strongest first within a part; holes are left out.
 
     Raises
     ------
@@ -223,8 +223,8 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     >>> import tempfile
     >>> from flexspline import study
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     found = study("examples/studies/grid.toml", out=folder)
-    >>> len(found.rows)
+    ...     result = study("examples/studies/grid.toml", out=folder)
+    >>> len(result.rows)
     9
     """
     from flexspline.pipeline.default_folder import default_folder
@@ -232,7 +232,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     from flexspline.pipeline.study.run import trial_store_of, whole_study
 
     path = file_name(path, "study")
-    asked = load_study(path)
+    loaded = load_study(path)
     folder = file_name(out, "out") if out is not None else default_folder(path)
-    store = trial_store_of(asked, folder)
-    return whole_study(asked, store)
+    store = trial_store_of(loaded, folder)
+    return whole_study(loaded, store)

@@ -13,13 +13,13 @@ T = TypeVar("T")
 
 
 class Attempts:
-    """`missing`: why a figure is not there, by its name ("K_b_lobes")."""
+    """Keeps in `missing` why a figure is not there, by its name ("K_b_lobes")."""
 
     def __init__(self) -> None:
         self.missing: dict[str, Shortfall] = {}
 
     def get(self, name: str, make: Callable[[], T]) -> T | None:
-        """The figure, or None where its computation failed; bugs and wrong designs pass through.
+        """Return the figure, or None where its computation failed; bugs and wrong designs pass through.
 
         So does a NestingError (`pipeline.errors`): no figure is to be trusted then.
         """

@@ -27,12 +27,12 @@ STD_KEY = "backlash_arcsec.std"
 
 
 def series_compliance(K_b: float, K_e: float) -> float:
-    """1/K_e + 1/K_b [rad/(N·m)] of flexspline and shaft one behind the other; both K in N·m/rad."""
+    """Return 1/K_e + 1/K_b [rad/(N·m)] of flexspline and shaft in series; both K in N·m/rad."""
     return 1 / K_e + 1 / K_b
 
 
 def series_stiffness(K_b: float, K_e: float) -> float:
-    """K [N·m/rad] of flexspline and shaft one behind the other: see `series_compliance`."""
+    """Return K [N·m/rad] of flexspline and shaft in series: see `series_compliance`."""
     return 1 / series_compliance(K_b, K_e)
 
 
@@ -96,12 +96,12 @@ class Backlash:
 
     @property
     def gap_arcsec(self) -> float:
-        """What flank clearance and bearing play leave free together."""
+        """Free angle of flank clearance and bearing play together."""
         return self.flank_clearance_arcsec + self.bearing_play_arcsec
 
 
 def windup(torque_Nm: float, stiffness_Nm_per_rad: float) -> float:
-    """Wind-up between −T and +T of one spring, 2T/K [rad].
+    """Return the wind-up between −T and +T of one spring, 2T/K [rad].
 
     Parameters: T [N·m], K [N·m/rad], both positive. Source: article, section 1.1.
 
@@ -116,7 +116,7 @@ def windup(torque_Nm: float, stiffness_Nm_per_rad: float) -> float:
 
 
 def gap_angle(normal_clearance: float, module: float, teeth: int, pressure_angle: float) -> float:
-    """Output angle that a normal flank clearance leaves free, 2j/(m z1 cos α) [rad].
+    """Return the output angle that a normal flank clearance leaves free, 2j/(m z1 cos α) [rad].
 
     Parameters: j [mm], m [mm], z1, α [rad]. Source: article, section 1.2.
 
@@ -131,7 +131,7 @@ def gap_angle(normal_clearance: float, module: float, teeth: int, pressure_angle
 
 
 def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Backlash:
-    """The four terms for a design whose flexspline and shaft have the given stiffness [N·m/rad].
+    """Return the four terms for a design whose flexspline and shaft have the given stiffness [N·m/rad].
 
     Δ_bl = 2T_L/K_e + 2T_L/K_b + 2(j_bn0 + j′)/(m z1 cos α). Young's modulus is one for both parts'
     doubt: its standard deviation acts on both compliances alike. The three sources are independent.
@@ -187,7 +187,7 @@ def play_clearance(design: Design, model: str | None = None, play_um: float | No
 
 
 def gap_rad(design: Design) -> float:
-    """The whole angular gap at the output, 2(j_bn0 + j′)/(m z1 cos α) [rad].
+    """Return the whole angular gap at the output, 2(j_bn0 + j′)/(m z1 cos α) [rad].
 
     Raises
     ------
@@ -220,7 +220,7 @@ def angle_rad(
 
 
 def clearance_angle(design: Design, normal_clearance: float) -> float:
-    """Output angle [rad] that a normal flank clearance [mm] leaves free in a design."""
+    """Return the output angle [rad] that a normal flank clearance [mm] leaves free in a design."""
     g = design.gear
     return gap_angle(
         normal_clearance, g.module_mm, g.teeth_flexspline, radians(g.pressure_angle_deg)

@@ -22,7 +22,7 @@ def by_harmonics(
     make: Callable[[Meridian, Deadline], T],
     **more: float,
 ) -> T:
-    """A figure of the meridian; `more` is what it depends on beside the part."""
+    """Return a figure of the meridian; `more` is what it depends on beside the part."""
     context = flexspline.context
 
     def timed() -> T:
@@ -40,25 +40,25 @@ def rim_by_harmonics(
     far_below_Nm_per_rad: float = 0.0,
     far_bounds_pct: float = 0.0,
 ) -> Stiffness:
-    """K_b of a body of revolution in a load case that `solve` answers; errors as of that.
+    """Return K_b of a body of revolution in a load case that `solve` answers; errors are those of `solve`.
 
     Where K is certainly below `far_below_Nm_per_rad`, bounds `far_bounds_pct` apart [% of K] are enough.
     """
-    own, width = flexspline.material, flexspline.tolerance
+    material, width = flexspline.material, flexspline.tolerance
 
-    def enough(found: Stiffness) -> bool:
-        far = found.upper_Nm_per_rad < far_below_Nm_per_rad
-        return far and 100 * found.half_width <= far_bounds_pct / 2
+    def enough(K: Stiffness) -> bool:
+        far = K.upper_Nm_per_rad < far_below_Nm_per_rad
+        return far and 100 * K.half_width <= far_bounds_pct / 2
 
     return by_harmonics(
         flexspline,
         figure_of(case),
         RIM_CASES[case].title,
-        lambda outline, deadline: Refining(solve(outline, own, width, deadline)).until(enough),
+        lambda outline, deadline: Refining(solve(outline, material, width, deadline)).until(enough),
         far_below_Nm_per_rad=far_below_Nm_per_rad,
         far_bounds_pct=far_bounds_pct,
     )
 
 
-def _is_lasting(found: Stiffness | StressPeak | tuple[StressPeak, float]) -> bool:
-    return is_lasting(found[0] if isinstance(found, tuple) else found)
+def _is_lasting(figure: Stiffness | StressPeak | tuple[StressPeak, float]) -> bool:
+    return is_lasting(figure[0] if isinstance(figure, tuple) else figure)

@@ -33,7 +33,7 @@ FORMAT = 31
 
 
 class KeyedLocks:
-    """One for each key. A value asks only for values of earlier stages, so none waits in a circle."""
+    """One lock for each key. A value asks only for values of earlier stages, so none waits in a circle."""
 
     def __init__(self) -> None:
         self._own = Lock()
@@ -77,7 +77,7 @@ def _given(path: Path | None, value: Any) -> None:
 
 @dataclass(frozen=True)
 class Cache:
-    """Entries below `folder`."""
+    """A cache of entries below `folder`."""
 
     folder: Path
     notice: Callable[[str], None] = print
@@ -87,7 +87,7 @@ class Cache:
     """What is not for the disk, or found no room there, by key."""
     locks: KeyedLocks = field(default_factory=KeyedLocks, compare=False)
     """Held while a value is made, by key."""
-    told: set[str] = field(default_factory=set, compare=False)
+    notices: set[str] = field(default_factory=set, compare=False)
     """Why results could not be stored: each reason is said once."""
 
     def get(
@@ -97,7 +97,7 @@ class Cache:
         make: Callable[[], T],
         is_lasting: Callable[[T], bool] = lambda _: True,
     ) -> tuple[T, bool]:
-        """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
+        """Return the stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
 
         A value that is not lasting is kept as long as this object and not on disk: another run may do better.
         Of two threads that ask for one value, or of a process and its copy, the second waits for the first.
@@ -114,20 +114,20 @@ class Cache:
         self, stage: str, key: str, make: Callable[[], T], is_lasting: Callable[[T], bool]
     ) -> tuple[T, bool]:
         path = self._path(stage, key)
-        found = self._read(path, key)
-        if found is not _MISSING:
-            return found, True
+        stored = self._read(path, key)
+        if stored is not _MISSING:
+            return stored, True
         discard(path.parent, self.notice)
         if key in self.failed:
             raise self.failed[key]
         if key in self.passing:
             return self.passing[key], True
-        if (shared := _shared(key)) is not None and (found := _taken(shared)) is not _MISSING:
-            if isinstance(found, ComputationError):
-                self.failed[key] = found
-                raise found
-            self.passing[key] = found
-            return found, True
+        if (shared := _shared(key)) is not None and (stored := _taken(shared)) is not _MISSING:
+            if isinstance(stored, ComputationError):
+                self.failed[key] = stored
+                raise stored
+            self.passing[key] = stored
+            return stored, True
         try:
             value = make()
         except ComputationError as fault:
@@ -191,8 +191,8 @@ class Cache:
                 made.unlink(missing_ok=True)
         except OSError as error:
             why = f"could not store a result in {self.folder}: {error.strerror}"
-            if why not in self.told:
-                self.told.add(why)
+            if why not in self.notices:
+                self.notices.add(why)
                 if _is_first(why):
                     self.notice(f"{why}; FLEXSPLINE_CACHE names another folder")
             return False
@@ -203,7 +203,7 @@ _MISSING: Any = object()
 
 
 def content_key(inputs: Mapping[str, Any]) -> str:
-    """SHA-256 of the inputs' canonical JSON; floats enter with all their digits."""
+    """Return the SHA-256 of the inputs' canonical JSON; floats enter with all their digits."""
     text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), default=_plain)
     # 160 bits: no two inputs ever meet by chance, and names of files stay short
     return hashlib.sha256(text.encode()).hexdigest()[:40]

@@ -4,5 +4,5 @@ from pathlib import Path
 
 
 def default_folder(file: Path) -> Path:
-    """NAME.out beside the file NAME.toml."""
+    """Return the folder NAME.out beside the file NAME.toml."""
     return file.parent / f"{file.stem}.out"

@@ -16,7 +16,7 @@ from flexspline.pipeline.progress import Progress
 
 
 def ring_of(design: Design, cache: Cache, progress: Progress) -> EquivalentRing | None:
-    """The plain ring that stands for the teeth; None where the design draws none."""
+    """Return the plain ring that stands for the teeth; None where the design draws none."""
     f, gear = design.flexspline, design.gear
     if f.teeth == "none":
         return None
@@ -39,7 +39,7 @@ def ring_of(design: Design, cache: Cache, progress: Progress) -> EquivalentRing 
 
 
 def with_plain_ring(design: Design, ring: EquivalentRing) -> Design:
-    """The design with a plain ring as stiff against bending as its toothed one.
+    """Return the design with a plain ring as stiff against bending as its toothed one.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def with_plain_ring(design: Design, ring: EquivalentRing) -> Design:
 
 
 def of_toothed(of_plain: Stiffness) -> Stiffness:
-    """K of the plain ring's part as K of the part with its teeth: the same numbers, now an estimate.
+    """Return K of the part with teeth: the same numbers as with its plain ring, but only estimated.
 
     The bounds enclose the plain part's K. That its ring is as stiff as the toothed one is a model, and no
     theorem says how far off it is.

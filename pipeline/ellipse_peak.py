@@ -30,7 +30,7 @@ SEAT_TOLERANCE = 0.02
 
 
 def ellipse_peak(flexspline: PartModel) -> StressPeak:
-    """By the model that the part's stiffness uses.
+    """Return the peak stress on the wave generator's ellipse, by the model that the part's stiffness uses.
 
     Where the solid model is needed for the stress at the holes alone, and fails, the peak is that without
     holes, and its `shortfall` says so.
@@ -56,7 +56,8 @@ def ellipse_peak(flexspline: PartModel) -> StressPeak:
 
 
 def ellipse_field(flexspline: PartModel) -> SolidField:
-    """The field for pictures and files; its peak from the model that answers. Errors as `ellipse_peak`."""
+    """Return the field for pictures and files, with the peak of the model that answers. Errors as
+    `ellipse_peak`."""
     if flexspline.axisymmetric:
         return replace(coarse_ellipse(flexspline), peak=ellipse_peak(flexspline))
     agreed = _by_two_bodies(flexspline)
@@ -66,16 +67,16 @@ def ellipse_field(flexspline: PartModel) -> SolidField:
 
 
 def half_seat_peak(flexspline: PartModel) -> StressPeak:
-    """The ellipse's peak on a seat half as wide, holes left out.
+    """Return the ellipse's peak on a seat half as wide, without holes.
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
-    w0, apart = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
+    w0, exclusion_mm = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
         narrow = with_narrow_seat(outline, NARROW_SEAT)
-        own = flexspline.material
-        return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
+        material = flexspline.material
+        return ellipse_stress(narrow, material, w0, exclusion_mm, SEAT_TOLERANCE, deadline).peak
 
     return by_harmonics(
         flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
@@ -89,15 +90,10 @@ def _by_two_bodies(flexspline: PartModel) -> StressPeak | None:
 
 
 def _load(flexspline: PartModel) -> BodyLoad:
-    w0, apart, own = (
-        flexspline.context.design.w0_mm,
-        flexspline.part.exclusion_mm,
-        flexspline.material,
-    )
-
-    tolerance = peak_tolerance(flexspline.tolerance)
+    w0, exclusion_mm = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
+    material, tolerance = flexspline.material, peak_tolerance(flexspline.tolerance)
 
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
-        return ellipse_stress(outline, own, w0, apart, tolerance, deadline)
+        return ellipse_stress(outline, material, w0, exclusion_mm, tolerance, deadline)
 
     return BodyLoad("wave_generator_peak", "wave generator", solve, {"w0_mm": w0})

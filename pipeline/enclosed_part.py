@@ -34,45 +34,44 @@ def may_answer(model: PartModel) -> bool:
 
 
 def enclosure_of(model: PartModel, bodies: TwoBodies) -> Stiffness:
-    """K_b of a part that `has_enclosure`; where half of the distance is more than the tolerance, `shortfall`
-    says why.
+    """Return K_b of a part that `has_enclosure`; `shortfall` says why its bounds are too wide.
 
     Raises
     ------
     NestingError
     """
-    found = bodies.enclosure()
-    if found.half_width <= model.tolerance:
-        return replace(found, shortfall=MET)
-    return replace(found, shortfall=found.shortfall or Shortfall(TOO_FAR))
+    enclosure = bodies.enclosure()
+    if enclosure.half_width <= model.tolerance:
+        return replace(enclosure, shortfall=MET)
+    return replace(enclosure, shortfall=enclosure.shortfall or Shortfall(TOO_FAR))
 
 
 def bodies_of(model: PartModel, solve: PartSolver) -> TwoBodies:
-    """Both solved as finely as the enclosure asks; errors as of `solve`."""
+    """Solve both bodies of revolution as finely as the enclosure asks; errors are those of `solve`."""
     return two_bodies(model.part, lambda body: solve(body_model(model, body, bounds_pct(model))))
 
 
 def without_holes(model: PartModel, solve: PartSolver) -> Stiffness:
-    """K of the part without its holes, as finely as the enclosure has it; errors as of `solve`."""
+    """Return K of the part without its holes, as fine as in the enclosure; errors are those of `solve`."""
     return solve(body_model(model, model.part.without_holes(), bounds_pct(model)))
 
 
 def bounds_pct(model: PartModel) -> float:
-    """Distance of each body's own bounds that an enclosure asks for [% of K]."""
+    """Return the distance of each body's own bounds that an enclosure asks for [% of K]."""
     return BODY_SHARE * model.context.design.solver.tolerance_pct
 
 
 def body_model(model: PartModel, body: Part, tolerance_pct: float) -> PartModel:
-    """A body of revolution in place of the part, with a tolerance of its own."""
+    """Return a body of revolution in place of the part, with a tolerance of its own."""
     design = model.context.design
-    asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
-    solver = design.solver.model_copy(update=asked)
+    settings = {"tolerance_pct": tolerance_pct, "model": "auto"}
+    solver = design.solver.model_copy(update=settings)
     context = replace(model.context, design=design.model_copy(update={"solver": solver}))
     return replace(model, context=context, part=body)
 
 
 def bodies_if_any(model: PartModel, bodies: Callable[[PartModel], TwoBodies]) -> TwoBodies | None:
-    """Both where there are such and they can be solved: the solid model answers without them too."""
+    """Return both bodies; None, for the solid model to answer, where there are none or a solve failed."""
     if not has_enclosure(model):
         return None
     try:

@@ -46,7 +46,7 @@ class TwoBodies:
     whole: Stiffness
 
     def enclosure(self) -> Stiffness:
-        """From the lower end of the cut body's to the upper of the whole body's; theorems where both are.
+        """Return K between the cut body's lower and the whole body's upper bound; theorems where both are.
 
         Raises
         ------
@@ -56,7 +56,7 @@ class TwoBodies:
 
 
 def two_bodies(part: Part, solve: Callable[[Part], Stiffness]) -> TwoBodies:
-    """Of a part with bolt holes; `solve` is a load case's solution of a body of revolution.
+    """Solve both bodies of a part with bolt holes; `solve` solves a load case of a body of revolution.
 
     Raises
     ------
@@ -67,12 +67,12 @@ def two_bodies(part: Part, solve: Callable[[Part], Stiffness]) -> TwoBodies:
 
 
 def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
-    """`TwoBodies.enclosure` of a part; errors of both."""
+    """Solve both bodies of a part and return their enclosure; errors as of both functions."""
     return two_bodies(part, solve).enclosure()
 
 
 def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
-    """The enclosure by two solved bodies; K is its middle.
+    """Return the enclosure by two solved bodies; K is its middle.
 
     Ends that are estimates may cross where the bodies differ by less than the estimates are wrong by: then
     the bounds go from the one to the other. They may not by more than both half-widths together: then one of
@@ -88,7 +88,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     if lower - upper > allowed:
         raise NestingError(names.less, lower, names.more, upper)
     gap = 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad
-    apart = percent(gap) if gap > 0 else "less than the bounds of either"
+    distance = percent(gap) if gap > 0 else "less than the bounds of either"
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
         lower_Nm_per_rad=min(lower, upper),
@@ -98,7 +98,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
         symmetry=names.symmetry,
         method=(
             f"from {names.less} to {names.more} (less material is never stiffer; the two K differ by "
-            f"{apart}); bounds of each by {whole.method}"
+            f"{distance}); bounds of each by {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -107,7 +107,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
 
 
 def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Stiffness:
-    """K of the solid model where its enclosure says more, or less, than its own estimate.
+    """Hold the solid model's K within its enclosure, where that says more, or less, than its own estimate.
 
     Where half of the enclosure is within `tolerance`·K, or it is the narrower of the two, its ends are the
     bounds; else each end is the better of both. K is the solid's, or the middle of what both leave where
@@ -147,14 +147,14 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
 
 
 def proven_by(enclosure: Stiffness) -> tuple[float, float] | None:
-    """Its bounds where they are theorems."""
+    """Return the enclosure's bounds if they are theorems."""
     return enclosure.bounds_Nm_per_rad if enclosure.guaranteed else None
 
 
 def answered_within(
     enclosure: Stiffness, solve: Callable[[], Stiffness], tolerance: float
 ) -> Stiffness:
-    """`held_within` of what `solve`, the solid model, finds; the enclosure alone where it fails.
+    """Return the solid model's K from `solve`, held within the enclosure; the enclosure alone where it fails.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def check_against(solid: Stiffness, enclosure: Stiffness) -> None:
 
 
 def overlap(solid: Stiffness, enclosure: Stiffness) -> bool:
-    """Whether both may be true."""
+    """Whether the bounds overlap, so that both may be true."""
     slack = PARABOLA_SLACK * enclosure.K_Nm_per_rad
     return (
         solid.lower_Nm_per_rad <= enclosure.upper_Nm_per_rad + slack

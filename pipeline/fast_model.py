@@ -23,7 +23,7 @@ from flexspline.pipeline.stress_limits import StressCase
 
 
 def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
-    """K_b (load case "uniform") and K_e.
+    """Return K_b (load case "uniform") and K_e.
 
     Raises
     ------
@@ -35,27 +35,27 @@ def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
 
 
 def rim(design: Design, case: RimCase) -> Stiffness:
-    """K_b of a lobe case; errors as `torsion`."""
+    """Return K_b of a lobe case; errors as `torsion`."""
     return CASES[case].fast(
         with_equivalent_ring(design).part("flexspline"), design.solver.tolerance
     )
 
 
 def first_lobes(design: Design) -> Stiffness:
-    """`rim` of "lobes" on the first mesh of each body that gives K to 4 %: mostly one, in half the time."""
+    """Return `rim` of "lobes" on each body's first mesh that gives K to 4 %: mostly in half the time."""
     part = with_equivalent_ring(design).part("flexspline")
     return first_rim(part, held_rim, design.solver.tolerance)
 
 
 def gear(design: Design) -> GearCurve:
-    """The whole gear, its shaft without holes; errors as `torsion`, and a play that takes the stroke."""
+    """Solve the whole gear, its shaft without holes; errors as `torsion`; a play may take the stroke."""
     tolerance = design.solver.tolerance
     K_e = stiffness(design, "shaft", tolerance).K_Nm_per_rad
     return curve_of(design, fast_chain(design, K_e, tolerance))
 
 
 def field(design: Design, view: StressCase) -> RevolvedField:
-    """Displacement and stress of a view of a `revolved` design; errors as `torsion`."""
+    """Return displacement and stress of a view of a `revolved` design; errors as `torsion`."""
     part, tolerance = _in_view(design, view), peak_tolerance(design.solver.tolerance)
     if view == "wave_generator":
         return ellipse_field(part, design.w0_mm, tolerance)
@@ -63,7 +63,7 @@ def field(design: Design, view: StressCase) -> RevolvedField:
 
 
 def first_field(design: Design) -> RevolvedField:
-    """`field` of the wave generator on the first mesh fine where its peak may be: a third of the time.
+    """Return `field` of the wave generator on the first mesh fine where its peak may be: a third of the time.
 
     Of 60 random cups and hats its peak was within 2 % for 53, at worst 2.7 % off.
     """
@@ -72,7 +72,7 @@ def first_field(design: Design) -> RevolvedField:
 
 
 def profile(design: Design, view: StressCase, chord_error: float) -> np.ndarray:
-    """The meridian (n, 2) [mm] of the part in view, arcs as chords: its shape before any solve."""
+    """Return the meridian (n, 2) [mm] of the part in view, arcs as chords: its shape before any solve."""
     return _in_view(design, view).meridian.polygon(chord_error)
 
 

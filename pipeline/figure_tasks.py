@@ -32,7 +32,7 @@ class Figures:
     missing: dict[str, Shortfall] = field(default_factory=dict)
 
     def add(self, other: Figures) -> None:
-        """What another task found."""
+        """Add the figures of another task."""
         self.K |= other.K
         self.peaks |= other.peaks
         self.missing |= other.missing
@@ -49,7 +49,7 @@ class _TaskResult:
 
 
 class FigureTasks:
-    """What is asked for, long ones first, so that both processes or threads end together.
+    """The tasks of a command, long ones first, so that both processes or threads end together.
 
     Lift-off has no solid model: it stands between two cases that may have large ones, of which one waits for
     the other (`fea.solid.alone`).
@@ -63,50 +63,52 @@ class FigureTasks:
         self._process = os.getpid()
 
     def add_part(self, name: str, part: PartModel) -> None:
-        """K of a part, by the name of the figure."""
+        """Add a task for K of a part, under the name of the figure."""
         self._parts[len(self._tasks)] = part
-        figures = partial(_stiffness, name, partial(part_stiffness, part))
-        self._tasks.append(partial(self._found, figures))
+        self._add(name, partial(part_stiffness, part))
 
     def add_rim(self, rim: PartModel) -> None:
-        """What the lobes and the ellipse do to the rim."""
+        """Add tasks for the lobe cases and the peaks on the wave generator."""
         for case in RIM_CASES:
-            figures = partial(_stiffness, figure_of(case), partial(rim_stiffness, rim, case))
-            self._tasks.append(partial(self._found, figures))
-        for name, peak in (
-            ("wave_generator_peak", ellipse_peak),
-            ("half_seat_peak", half_seat_peak),
-        ):
-            self._tasks.append(partial(self._found, partial(_peak, name, partial(peak, rim))))
+            self._add(figure_of(case), partial(rim_stiffness, rim, case))
+        self._add("wave_generator_peak", partial(ellipse_peak, rim))
+        self._add("half_seat_peak", partial(half_seat_peak, rim))
+
+    def _add(self, name: str, solve: Callable[[], Stiffness | StressPeak]) -> None:
+        self._tasks.append(partial(self._result, partial(_attempt, name, solve)))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
-        """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
+        """Run all tasks and return their figures; errors as of the tasks. `begun`: as of `results_of`."""
         figures = Figures()
 
-        def told(number: int, found: _TaskResult) -> None:
-            figures.add(found.figures)
-            self._learn(found)
+        def take_in(number: int, result: _TaskResult) -> None:
+            figures.add(result.figures)
+            self._learn(result)
             if number in self._parts:
                 self._solved(self._parts[number])
 
         if may_copy():
-            results_of(self._tasks, begun, told)
+            results_of(self._tasks, begun, take_in)
             return figures
+
+        def solve(number: int) -> None:
+            take_in(number, self._tasks[number]())
+
         begun()
-        tasks = [partial(_then, task, partial(told, n)) for n, task in enumerate(self._tasks)]
-        with beside(self._context.progress, tasks) as rest:
+        numbers = range(len(self._tasks))
+        with beside(self._context.progress, [partial(solve, n) for n in numbers]) as rest:
             rest()
         return figures
 
-    def _learn(self, found: _TaskResult) -> None:
+    def _learn(self, result: _TaskResult) -> None:
         """What a copy of this process remembers of its task."""
         cache = self._context.cache
-        for known, there in ((cache.passing, found.passing), (cache.failed, found.failed)):
+        for known, there in ((cache.passing, result.passing), (cache.failed, result.failed)):
             known.update({key: value for key, value in there.items() if key not in known})
-        for stage, seconds in found.seconds.items():
+        for stage, seconds in result.seconds.items():
             self._context.progress.add(stage, seconds)
 
-    def _found(self, make: Callable[[], Figures]) -> _TaskResult:
+    def _result(self, make: Callable[[], Figures]) -> _TaskResult:
         if os.getpid() == self._process:
             return _TaskResult(make(), {}, {}, {})
         cache, seconds = self._context.cache, dict(self._context.progress.seconds)
@@ -119,17 +121,12 @@ class FigureTasks:
         )
 
 
-def _then(task: Callable[[], _TaskResult], told: Callable[[_TaskResult], None]) -> None:
-    told(task())
-
-
-def _stiffness(name: str, solve: Callable[[], Stiffness]) -> Figures:
+def _attempt(name: str, solve: Callable[[], Stiffness | StressPeak]) -> Figures:
     tried = Attempts()
-    K = tried.get(name, solve)
-    return Figures({} if K is None else {name: K}, {}, tried.missing)
-
-
-def _peak(name: str, find: Callable[[], StressPeak]) -> Figures:
-    tried = Attempts()
-    peak = tried.get(name, find)
-    return Figures({}, {} if peak is None else {name: peak}, tried.missing)
+    figure = tried.get(name, solve)
+    figures = Figures(missing=tried.missing)
+    if isinstance(figure, StressPeak):
+        figures.peaks[name] = figure
+    elif figure is not None:
+        figures.K[name] = figure
+    return figures

@@ -52,7 +52,7 @@ def touches(design: Design) -> bool:
 
 
 def excess(design: Design) -> float | None:
-    """By which share K_e is larger than of the shaft held under the flange alone.
+    """Return the share by which K_e is larger than that of the shaft held under the flange alone.
 
     None where the flange does not touch the first face, or no mesh gives it.
     """
@@ -74,7 +74,7 @@ def is_too_large(design: Design) -> bool:
 
 
 def why_too_large(design: Design, estimate: bool = True) -> str:
-    """In words, after "K_e is"; `estimate`: with the figure, which takes up to 0.3 s."""
+    """Return the words after "K_e is"; `estimate`: with the figure, which takes up to 0.3 s."""
     if not touches(design):
         return "that of a shaft held on its whole first face, which the hat's flange does not touch"
     share = excess(design) if estimate else None
@@ -83,7 +83,7 @@ def why_too_large(design: Design, estimate: bool = True) -> str:
 
 
 def too_large_line(design: Design, estimate: bool = True) -> str:
-    """The warning, with its remedy."""
+    """Return the warning, with its remedy."""
     why = why_too_large(design, estimate)
     if not touches(design):
         return f"K_e is {why}; {_apart(design)}"
@@ -100,7 +100,7 @@ def too_large_line(design: Design, estimate: bool = True) -> str:
 
 
 def too_large_lines(design: Design) -> tuple[str, ...]:
-    """`too_large_line` where it `is_too_large`."""
+    """Return `too_large_line` where `is_too_large`, else nothing."""
     return (too_large_line(design),) if is_too_large(design) else ()
 
 

@@ -31,7 +31,7 @@ class StatedEdgeError(SolidError):
 
 
 def fitting_edge_mm(part: Part, sector: Sector, stated_mm: float) -> float | None:
-    """To two digits; None where no mesh tells it."""
+    """Return the edge length that fits, to two digits; None where no mesh tells it."""
     edge = first_spec(part).grading.far
     fits = None
     for _ in range(TRIES):

@@ -26,7 +26,7 @@ class NoDesignError(FlexsplineError, TypeError):
 
 
 class DesignWarning(UserWarning):
-    """What is unusual in a design, in the commands' words."""
+    """Warns of an unusual design, in the commands' words."""
 
 
 def require_design(given: object) -> None:
@@ -57,7 +57,7 @@ def require_design(given: object) -> None:
 
 
 def warn_of_first_face(design: Design) -> None:
-    """That K_e is too large, as a `DesignWarning` at the same line."""
+    """Warn that K_e is too large, by a `DesignWarning` at the same line."""
     from flexspline.pipeline.first_face import too_large_lines
 
     for line in too_large_lines(design):

@@ -28,7 +28,7 @@ def resting_with_holes(
     held: TwoBodies,
     held_of_part: Callable[[], Stiffness],
 ) -> Stiffness:
-    """K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
+    """Return K_b with a rim that may lift off, of a part that `has_enclosure`: its enclosure, or better.
 
     `resting` and `held` are its bodies of revolution, `held_of_part` solves the part with its seat held; it
     is asked where the enclosure is wider than the tolerance only.
@@ -42,10 +42,10 @@ def resting_with_holes(
         return enclosure
     ratios = [
         (
-            found.lower_Nm_per_rad / own.lower_Nm_per_rad,
-            found.upper_Nm_per_rad / own.upper_Nm_per_rad,
+            rim.lower_Nm_per_rad / rim_held.lower_Nm_per_rad,
+            rim.upper_Nm_per_rad / rim_held.upper_Nm_per_rad,
         )
-        for found, own in ((resting.cut, held.cut), (resting.whole, held.whole))
+        for rim, rim_held in ((resting.cut, held.cut), (resting.whole, held.whole))
     ]
 
     def of_part() -> Stiffness:
@@ -55,7 +55,7 @@ def resting_with_holes(
 
 
 def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
-    """K held times what lift-off leaves of it, from the bounds of the two bodies' ratios; an estimate."""
+    """Return K held times the ratio that lift-off leaves, from the two bodies' bounds; an estimate."""
     middles = [(low + high) / 2 for low, high in ratios]
     spread = RATIO_SPREAD * (max(middles) - min(middles))
     low, high = min(r[0] for r in ratios) - spread, max(r[1] for r in ratios) + spread
@@ -72,8 +72,8 @@ def by_ratio(held: Stiffness, ratios: list[tuple[float, float]]) -> Stiffness:
     )
 
 
-def _judged(found: Stiffness, tolerance: float) -> Stiffness:
-    if found.half_width <= tolerance:
-        return replace(found, shortfall=MET)
-    held = f"; with the seat held: {found.shortfall}" if found.shortfall else ""
-    return replace(found, shortfall=replace(found.shortfall, words=f"{TOO_FAR}{held}"))
+def _judged(K: Stiffness, tolerance: float) -> Stiffness:
+    if K.half_width <= tolerance:
+        return replace(K, shortfall=MET)
+    held = f"; with the seat held: {K.shortfall}" if K.shortfall else ""
+    return replace(K, shortfall=replace(K.shortfall, words=f"{TOO_FAR}{held}"))

@@ -11,12 +11,7 @@ from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.tube import polar_moment_mm4
-from flexspline.pipeline.stress_limits import (
-    HIGHEST_STRENGTH_MPA,
-    ON_ELLIPSE,
-    PART_OF,
-    is_compared,
-)
+from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, ON_ELLIPSE, PART_OF, is_compared
 
 
 @dataclass(frozen=True)
@@ -60,7 +55,7 @@ class LinearLimit:
 def linear_limit(
     design: Design, K_series_Nm_per_rad: float, peaks: Mapping[str, StressPeak] | None = None
 ) -> LinearLimit:
-    """The least of the torques at which the twist T/K reaches a tooth's pitch 2π/z1 or a stress its limit.
+    """Return the least torque at which T/K reaches a tooth's pitch 2π/z1 or a stress its limit [N·m].
 
     Stresses are those that equilibrium alone gives in tube, diaphragm and shaft, and of `peaks` under the
     load torque (by their names in result.json) those that are the part's; None: they were not solved. Real

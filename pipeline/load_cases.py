@@ -29,10 +29,7 @@ from flexspline.pipeline.enclosure import TwoBodies, answered_within, check_agai
 from flexspline.pipeline.lift_off_with_holes import resting_with_holes
 from flexspline.pipeline.lobes_by_torsion import entry_doubt, lobes_by_torsion
 from flexspline.pipeline.lobes_with_holes import lobes_with_holes
-from flexspline.pipeline.part_stiffness import (
-    part_stiffness,
-    revolved_stiffness,
-)
+from flexspline.pipeline.part_stiffness import part_stiffness, revolved_stiffness
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, RimSolve, figure_of
@@ -57,7 +54,7 @@ class RimModels:
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
-    """K_b of one lobe case, by the model that the part's stiffness uses.
+    """Return K_b of one lobe case, by the model that the part's stiffness uses.
 
     A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance; where
     the solid model is asked for by name, its K is only checked against them. A case without a solid model is
@@ -69,24 +66,24 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     NestingError : the solid model's K lies outside.
     ComputationError : the solve failed; or lift-off without holes is asked of the solid model.
     """
-    asked = CASES[case]
+    models = CASES[case]
     if flexspline.axisymmetric:
-        return asked.revolved(flexspline)
-    if asked.with_holes is not None and has_enclosure(flexspline):
-        if asked.solid is None:
-            return asked.with_holes(flexspline)
+        return models.revolved(flexspline)
+    if models.with_holes is not None and has_enclosure(flexspline):
+        if models.solid is None:
+            return models.with_holes(flexspline)
         if may_answer(flexspline):
-            bodies = bodies_if_any(flexspline, asked.bodies)
+            bodies = bodies_if_any(flexspline, models.bodies)
             if bodies is None:
-                return asked.with_holes(flexspline)
-            return _enclosed_rim(flexspline, bodies, asked.with_holes)
-    if asked.solid is None:
+                return models.with_holes(flexspline)
+            return _enclosed_rim(flexspline, bodies, models.with_holes)
+    if models.solid is None:
         raise ComputationError(
             f"{RIM_CASES[case].title} ({case}) is solved on the meridian only: not with solver.model ="
             f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
-    solid = asked.solid(flexspline)
-    if bodies := bodies_if_any(flexspline, asked.bodies):
+    solid = models.solid(flexspline)
+    if bodies := bodies_if_any(flexspline, models.bodies):
         check_against(solid, enclosure_of(flexspline, bodies))
     return solid
 
@@ -96,17 +93,19 @@ def _enclosed_rim(
 ) -> Stiffness:
     """K_b between two bodies of revolution. If they are too far apart: K_b from torsion, within them; if that
     is not enough, the solved change by the holes."""
-    found, tolerance = enclosure_of(flexspline, bodies), flexspline.tolerance
-    if found.half_width > tolerance:
+    answer, tolerance = enclosure_of(flexspline, bodies), flexspline.tolerance
+    if answer.half_width > tolerance:
         try:
             K_b = part_stiffness(flexspline)
         except (ComputationError, MemoryError) as fault:
             flexspline.context.progress.note(f"  no K_b in torsion to begin with: {fault}")
         else:
-            found = answered_within(found, lambda: _by_torsion(flexspline, K_b, bodies), tolerance)
-    if found.half_width <= tolerance:
-        return found
-    return answered_within(found, lambda: with_holes(flexspline), tolerance)
+            answer = answered_within(
+                answer, lambda: _by_torsion(flexspline, K_b, bodies), tolerance
+            )
+    if answer.half_width <= tolerance:
+        return answer
+    return answered_within(answer, lambda: with_holes(flexspline), tolerance)
 
 
 def _by_torsion(flexspline: PartModel, K_b: Stiffness, bodies: TwoBodies) -> Stiffness:
@@ -122,7 +121,7 @@ def by_itself(
     solid: Callable[[PartModel], Stiffness] | None = None,
     with_holes: Callable[[PartModel], Stiffness] | None = None,
 ) -> RimModels:
-    """A case that `solve` answers on a meridian without another case's answer."""
+    """Return the models of a case that `solve` answers on a meridian without another case's answer."""
 
     of_part = partial(rim_by_harmonics, case=case, solve=solve)
 
@@ -150,12 +149,12 @@ def _resting(flexspline: PartModel) -> Stiffness:
 
 def _resting_on(flexspline: PartModel, held: Stiffness, tolerance: float) -> Stiffness:
     """Of a body of revolution; `held`: its K with the seat held; `tolerance`: as of `contact_stiffness`."""
-    own = flexspline.material
+    material = flexspline.material
     return by_harmonics(
         flexspline,
         figure_of("lobes_contact"),
         RIM_CASES["lobes_contact"].title,
-        lambda outline, deadline: contact_stiffness(outline, own, held, deadline, tolerance),
+        lambda outline, deadline: contact_stiffness(outline, material, held, deadline, tolerance),
         held_from_Nm_per_rad=held.lower_Nm_per_rad,
         held_to_Nm_per_rad=held.upper_Nm_per_rad,
         tolerance=tolerance,
@@ -167,9 +166,9 @@ def _resting_bodies(flexspline: PartModel, held: TwoBodies) -> TwoBodies:
     bodies = nested_bodies(flexspline.part)
     doubt = _wanted_doubt(held.enclosure().half_width, flexspline)
 
-    def solve(body: Part, own: Stiffness) -> Stiffness:
+    def solve(body: Part, body_held: Stiffness) -> Stiffness:
         of_body = body_model(flexspline, body, bounds_pct(flexspline))
-        return _resting_on(of_body, own, own.half_width + doubt)
+        return _resting_on(of_body, body_held, body_held.half_width + doubt)
 
     return TwoBodies(solve(bodies.cut, held.cut), solve(bodies.whole, held.whole))
 

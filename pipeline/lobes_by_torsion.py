@@ -27,7 +27,7 @@ ring's thickness, 0.03 %."""
 
 
 def entry_doubt(f: Flexspline) -> float:
-    """FLUSH_DOUBT where the ring begins less than its own thickness from the diaphragm or the land."""
+    """Return FLUSH_DOUBT for a ring nearer than its thickness to diaphragm or land, else ENTRY_DOUBT."""
     free = f.ring_start - max(f.hole_depth, f.diaphragm_thickness_mm)
     return ENTRY_DOUBT if free >= f.ring_thickness_mm else FLUSH_DOUBT
 
@@ -40,7 +40,7 @@ def lobes_by_torsion(
     tolerance: float,
     entry: float = ENTRY_DOUBT,
 ) -> Stiffness:
-    """K_b of the part under the lobe load; the bounds are estimates.
+    """Return K_b of the part under the lobe load; the bounds are estimates.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def lobes_by_torsion(
     softest = 1 / whole.lower_Nm_per_rad + high + rest + coupled
     stiffest = 1 / whole.upper_Nm_per_rad + max(low - coupled, 0.0)
     K = 2 / (softest + stiffest)
-    found = replace(
+    stiffness = replace(
         K_b.times(K / K_b.K_Nm_per_rad),
         lower_Nm_per_rad=1 / softest,
         upper_Nm_per_rad=1 / stiffest,
@@ -75,9 +75,9 @@ def lobes_by_torsion(
         ),
         proven_Nm_per_rad=None,
     )
-    if found.half_width <= tolerance:
-        return replace(found, shortfall=MET)
-    return replace(found, shortfall=K_b.shortfall or Shortfall(TOO_FAR))
+    if stiffness.half_width <= tolerance:
+        return replace(stiffness, shortfall=MET)
+    return replace(stiffness, shortfall=K_b.shortfall or Shortfall(TOO_FAR))
 
 
 def _added(K_b: Stiffness, whole: Stiffness, entry: float) -> tuple[float, float]:
@@ -95,5 +95,5 @@ def _apart(lobes: TwoBodies, first: int) -> float:
         return sum(body.harmonics[every::every])
 
     cut, whole = lobes.cut, lobes.whole
-    apart = share(cut) / cut.lower_Nm_per_rad - share(whole) / whole.upper_Nm_per_rad
-    return max(apart, 0.0)
+    difference = share(cut) / cut.lower_Nm_per_rad - share(whole) / whole.upper_Nm_per_rad
+    return max(difference, 0.0)

@@ -27,7 +27,7 @@ these are there is told by itself (`SolvedCorrection.doubt`)."""
 
 
 def lobes_with_holes(flexspline: PartModel, supported: bool) -> Stiffness:
-    """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
+    """Return K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
 
     Raises
     ------
@@ -45,11 +45,11 @@ def _wholes(flexspline: PartModel, supported: bool) -> Iterator[WholeUnderLobes]
     case: RimCase = "lobes" if supported else "lobes_unsupported"
     solve = held_rim if supported else free_rim
     K = without_holes(flexspline, partial(rim_by_harmonics, case=case, solve=solve))
-    each = solved_lobes(
+    solutions = solved_lobes(
         part.without_holes().meridian, flexspline.material, supported,
         FIELD_WIDTH * flexspline.tolerance, at_cuts(part), Deadline(STAGE_SECONDS),
     )  # fmt: skip
-    for coarser, finer in pairwise(each):
+    for coarser, finer in pairwise(solutions):
         yield WholeUnderLobes(part, K, finer, coarser)
 
 

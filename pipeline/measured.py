@@ -25,7 +25,7 @@ def diagnose(
     counts_per_turn: float | None = None,
     against: Literal["sum", "gear"] = "sum",
 ) -> Diagnosis:
-    """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
+    """Find what the simulation leaves out, from a measured file; K [N·m/rad] by FE where not given.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ def diagnose(
 
     >>> from flexspline import diagnose, load_design
     >>> design = load_design("examples/xb1-40.toml")
-    >>> found = diagnose(design, "examples/measured/xb1-40-sweep.csv", K_b=31377, K_e=43275)
-    >>> found.verdict, sorted(cause.id for cause in found.causes)
+    >>> diagnosis = diagnose(design, "examples/measured/xb1-40-sweep.csv", K_b=31377, K_e=43275)
+    >>> diagnosis.verdict, sorted(cause.id for cause in diagnosis.causes)
     ('named', ['friction_hysteresis', 'thermal_clearance'])
-    >>> cold, warm = (found.model.angle_arcsec([1.0, -1.0], temperature_C=[T, T]) for T in (20, 40))
+    >>> cold, warm = (diagnosis.model.angle_arcsec([1.0, -1.0], temperature_C=[T, T]) for T in (20, 40))
     >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
     True
     """
@@ -73,11 +73,11 @@ def diagnose(
     require_design(design)
     if against not in ("sum", "gear"):
         raise DesignError("against", against, 'must be "sum" or "gear"')
-    found, _ = diagnose_with_stiffness(
+    diagnosis, _ = diagnose_with_stiffness(
         design,
         file_name(path, "measured data"),
         GivenStiffness((K_b, K_e), ("K_b = ", "K_e = ")),
         context,
         DiagnosisOptions(counts_per_turn, gear=against == "gear"),
     )
-    return found
+    return diagnosis

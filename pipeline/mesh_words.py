@@ -12,7 +12,7 @@ s for 335 000 of the second."""
 
 
 def long_solve(model: PartModel, elements: int) -> str:
-    """Before a mesh is solved, where that takes long; else ""."""
+    """Return a line to print before a solve that takes long; else ""."""
     if elements < LONG_ELEMENTS:
         return ""
     edge = model.context.design.solver.edge_length_mm
@@ -21,7 +21,7 @@ def long_solve(model: PartModel, elements: int) -> str:
 
 
 def remedy(model: PartModel) -> str:
-    """How to tighten the bounds of K if the last mesh does not meet the tolerance."""
+    """Return how to tighten the bounds of K if the last mesh does not meet the tolerance."""
     part, by_name = model.part, model.context.design.solver.model == "solid"
     if by_name and not part.cuts_meet:
         alone = f", and on such meshes only the effect of its {part.cuts}" if part.cuts else ""

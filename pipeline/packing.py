@@ -19,7 +19,7 @@ PACKAGE = __name__.partition(".")[0] + "."
 
 
 def packed(value: Any) -> bytes:
-    """Arrays, dataclasses of this package, mappings, sequences, bytes and plain values, nested at will."""
+    """Pack arrays, dataclasses of this package, mappings, sequences, bytes and plain values, nested."""
     arrays: dict[str, np.ndarray] = {}
     text = json.dumps(_encode(value, arrays)).encode()
     data = io.BytesIO()
@@ -28,7 +28,7 @@ def packed(value: Any) -> bytes:
 
 
 def unpacked(data: bytes) -> Any:
-    """What was packed; sequences come as tuples.
+    """Return what was packed; sequences come as tuples.
 
     Raises
     ------
@@ -80,8 +80,8 @@ def _name(kind: type) -> str:
 
 def _named(name: str) -> type:
     """The dataclass of that `_name`; any other is refused."""
-    module, _, own = name.partition(":")
-    kind = getattr(import_module(module), own) if module.startswith(PACKAGE) else None
+    module, _, attribute = name.partition(":")
+    kind = getattr(import_module(module), attribute) if module.startswith(PACKAGE) else None
     if not (isinstance(kind, type) and is_dataclass(kind) and _name(kind) == name):
         raise ValueError(f"{name} is not a dataclass of this package")
     return kind

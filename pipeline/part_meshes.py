@@ -87,7 +87,7 @@ class MeshedPart:
 
 @dataclass(frozen=True)
 class PartMeshes:
-    """The meshes that can be had of a part; its CAD surface is made once, where one needs it."""
+    """Makes the meshes of a part; its CAD surface is made once, where a mesh needs it."""
 
     model: PartModel
     kinds: tuple[MeshKind, ...] = KINDS
@@ -115,7 +115,7 @@ class PartMeshes:
     def swept(
         self, spec: MeshSpec, finer: Finer | None = None, most_elements: float = inf
     ) -> MeshedPart | None:
-        """Swept from the meridian, or by `fea.solid.layered`; None for a part that only a mesher can mesh.
+        """Return a mesh swept from the meridian or in layers; None for a part that only a mesher can mesh.
 
         Raises
         ------
@@ -131,7 +131,7 @@ class PartMeshes:
         return self._of_sweep(mesh)
 
     def layered(self, spec: MeshSpec) -> MeshedPart | None:
-        """In layers, a shaft whose sweep about the axis fails; None where that fails too."""
+        """Return a mesh in layers of a shaft whose sweep about the axis fails; None where that fails too."""
         model = self.model
         if not isinstance(model.part.shape, Shaft) or not goes_about_axis(model.part):
             return None  # `swept` has tried what there is
@@ -174,7 +174,7 @@ class PartMeshes:
         return MeshedPart(mesh, edges, "layered" if mesh.in_layers else "swept")
 
     def coarsened(self, most_elements: float) -> MeshSpec:
-        """The part's first specification, or a coarser one where its swept mesh has more elements than that.
+        """Return the first specification, or a coarser one where its swept mesh has too many elements.
 
         An edge length that the design states is kept, and so is the last one that can be swept.
 
@@ -191,7 +191,7 @@ class PartMeshes:
         counted = goes_about_axis(model.part)
         for _ in range(COARSENINGS[model.name] if counted else COARSENINGS_UNCOUNTED):
             try:
-                found = self._swept_or(before, spec, most_elements)
+                chosen = self._swept_or(before, spec, most_elements)
                 break
             except TooManyElementsError as fault:
                 if counted and fault.elements > HARDLY_FEWER * elements:
@@ -199,10 +199,10 @@ class PartMeshes:
                 elements, spec, before = fault.elements, spec.scaled(COARSER_EDGES), spec
         else:
             last = spec if counted else spec.scaled(AS_COARSE_AS_CAN_BE)
-            found = self._swept_or(before, last, self.most_of_first)
-        if found is before and self.most_of_first < elements < inf:
+            chosen = self._swept_or(before, last, self.most_of_first)
+        if chosen is before and self.most_of_first < elements < inf:
             raise TooManyElementsError(elements, self.most_of_first)
-        return found
+        return chosen
 
     def _swept_or(self, before: MeshSpec, spec: MeshSpec, most_elements: float) -> MeshSpec:
         """`spec`, whose swept mesh is kept; or the one before, where that fails a check."""
@@ -221,7 +221,7 @@ class PartMeshes:
         return spec
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
-        """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.
+        """Mesh to a specification by `solver.mesher`, from the cache or new: "auto" sweeps where that works.
 
         Raises
         ------

@@ -29,7 +29,7 @@ from flexspline.pipeline.unfilleted_shaft import may_leave_fillets_out, twisted_
 
 
 def part_stiffness(model: PartModel) -> Stiffness:
-    """K by the design's `solver.model`: axisymmetric where the part allows it, else solid.
+    """Return K by the design's `solver.model`: axisymmetric where the part allows it, else solid.
 
     A flexspline with bolt holes lies between two bodies of revolution: the solid model's K is held
     within them, or, with `solver.model = "solid"`, only checked against them. Nobody waits for a mesh that is
@@ -42,12 +42,12 @@ def part_stiffness(model: PartModel) -> Stiffness:
     NestingError : the solid model's K lies outside.
     ComputationError, MemoryError : of the first mesh.
     """
-    found = revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
-    return of_toothed(found) if model.toothed else found
+    K = revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
+    return of_toothed(K) if model.toothed else K
 
 
 def revolved_stiffness(model: PartModel) -> Stiffness:
-    """K in torsion of a body of revolution, with its bounds; it goes through the cache.
+    """Return K in torsion of a body of revolution, with its bounds; it goes through the cache.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
 
 
 def torsion_enclosure(model: PartModel) -> Stiffness | None:
-    """Of the turned part, if any; its bodies take 0.1 s each, as fine as is asked; raises NestingError."""
+    """Return the enclosure in torsion, if any; its bodies take 0.1 s each. It raises NestingError."""
     bodies = bodies_if_any(model, partial(bodies_of, solve=revolved_stiffness))
     return None if bodies is None else enclosure_of(model, bodies)
 
@@ -90,7 +90,7 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
 
 
 def twisted_part(model: PartModel) -> TwistedPart:
-    """The solid model turned by 1 rad, refined until the tolerance is met; errors as `part_stiffness`.
+    """Turn the solid model by 1 rad, refined until the tolerance is met; errors as `part_stiffness`.
 
     Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
     """
@@ -102,9 +102,9 @@ def twisted_part(model: PartModel) -> TwistedPart:
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
             if one_mesh and enclosure is not None:
-                found = twisted(model, inf, second_s=second_s)
-                if overlap(found.stiffness, enclosure):
-                    return found
+                solved = twisted(model, inf, second_s=second_s)
+                if overlap(solved.stiffness, enclosure):
+                    return solved
             if may_leave_fillets_out(model):
                 return twisted_shaft(model, tolerance)
             return twisted(model, tolerance, second_s=second_s)
@@ -114,7 +114,7 @@ def twisted_part(model: PartModel) -> TwistedPart:
 
 
 def turned_field(model: PartModel, twisted: TwistedPart) -> TurnedField:
-    """Of that part's mesh, solved now if K did not need it; errors as `part_stiffness`."""
+    """Return the field of that part's mesh, solved now if K did not need it; errors as `part_stiffness`."""
     if twisted.turned is not None:
         return twisted.turned
 
@@ -129,7 +129,7 @@ def turned_field(model: PartModel, twisted: TwistedPart) -> TurnedField:
 
 
 def rim_mesh(model: PartModel) -> MeshedPart:
-    """A flexspline's sector for lobes and ellipse: the torsion's, or a coarser one (`most_in_sector`).
+    """Return a flexspline's sector for lobes and ellipse: torsion's, or a coarser one (`most_in_sector`).
 
     Raises
     ------

@@ -30,7 +30,7 @@ time of the first (48 and 33 s)."""
 
 @dataclass(frozen=True)
 class AnalysisContext:
-    """What every stage needs: the design, the cache, and somebody to tell."""
+    """The design, the cache, and the progress to report: what every stage needs."""
 
     design: Design
     cache: Cache
@@ -42,7 +42,7 @@ class AnalysisContext:
         return ring_of(self.design, self.cache, self.progress)
 
     def part(self, name: PartName) -> PartModel:
-        """Its model; a flexspline's teeth enter it as the equivalent plain ring.
+        """Return a part's model; a flexspline's teeth enter it as the equivalent plain ring.
 
         Raises
         ------
@@ -55,9 +55,9 @@ class AnalysisContext:
         return PartModel(plain, plain.design.part(name), toothed=True)
 
 
-def is_lasting(found: Stiffness | StressPeak) -> bool:
+def is_lasting(figure: Stiffness | StressPeak) -> bool:
     """Whether a figure would be the same on a machine with more time and memory."""
-    return not found.shortfall.of_the_machine
+    return not figure.shortfall.of_the_machine
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class PartModel:
 
     @property
     def first_spec(self) -> MeshSpec:
-        """Of its first, coarse mesh."""
+        """Specification of the part's first, coarse mesh."""
         spec = first_spec(self.part, self.context.design.solver.edge_length_mm)
         if not self.states_edges and self.name == "shaft" and not goes_about_axis(self.part):
             return spec.scaled(LAYERED_COARSER)

@@ -47,7 +47,7 @@ up to 16 % of what meshes of up to six times the elements had (five cups of 2 to
 
 
 def peak_tolerance(tolerance: float) -> float:
-    """Change of a peak over two refinements at which none follows; `tolerance` is that of K."""
+    """Return the change of a peak over two refinements at which none follows; `tolerance` is that of K."""
     return min(PEAK_STRESS_TOLERANCE, max(CLOSEST_PEAK, tolerance))
 
 
@@ -69,7 +69,7 @@ class BodyLoad:
 
 
 def body_peak(model: PartModel, load: BodyLoad) -> StressPeak:
-    """Of a part that is a body of revolution.
+    """Return the peak of a part that is a body of revolution.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def body_peak(model: PartModel, load: BodyLoad) -> StressPeak:
 def peak_by_two_bodies(
     flexspline: PartModel, load: BodyLoad, solid: Callable[[], SolidField]
 ) -> StressPeak | None:
-    """The whole body's peak, None where the cut one has another, or there are no two bodies.
+    """Return the whole body's peak; None where the cut one has another, or there are no two bodies.
 
     It has `stands_for` where it is the part's: where the stress at the holes is certainly below it. `solid`
     is the field of the part itself, asked where a bound of that stress does not settle it.
@@ -97,8 +97,8 @@ def peak_by_two_bodies(
     except ComputationError:
         return None
     same = abs(cut.mises_MPa / whole.mises_MPa - 1) <= AGREEMENT
-    here = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
-    if not (same and here):
+    same_place = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
+    if not (same and same_place):
         return None
     if raised(at_holes, bolts) >= whole.mises_MPa:
         try:
@@ -111,7 +111,7 @@ def peak_by_two_bodies(
 
 
 def raised(stress_MPa: float, bolts: BoltCircle) -> float:
-    """What round holes in a row make of a stress that the plate without them has."""
+    """Return the stress at round holes in a row, from that of the plate without them."""
     if bolts.count == 1:
         return KIRSCH * stress_MPa
     return KIRSCH * stress_MPa * bolts.pitch / (bolts.pitch - 2 * bolts.hole_radius)

@@ -26,7 +26,7 @@ def play_distribution(
     reach: float = PLAY_SIGMAS,
     nodes: int = PLAY_NODES,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The play's truncated normal as a quadrature: steps (k,) from c in standard deviations, weights (k,).
+    """Return the play's truncated normal as a quadrature: steps (k,) in standard deviations, weights (k,).
 
     Weights sum to 1; no step leads beyond c_max. The small-displacement model has no end, so its
     normal is whole. `play_std_um` above 0; `reach` standard deviations on each side are covered.
@@ -46,7 +46,7 @@ def _steps_to_end(gear: Gear, bearing: Bearing, play_std_um: float) -> float:
 
 
 def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float, float]:
-    """Standard deviation of the normal clearance j′ [mm], and the probability that c > c_max.
+    """Return the standard deviation of the clearance j′ [mm], and the probability that c > c_max.
 
     Small-displacement model: s·sin α, exactly. Involute model: the root mean square of
     j′(C) − j′(c) for C normal about c with deviation s, given C ≤ c_max. Far from c_max that is the
@@ -62,7 +62,7 @@ def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float
         return s * sin(alpha), 0.0
     a, play = gear.centre_distance_mm, bearing.radial_clearance_mm
     steps, weight = play_distribution(gear, bearing, play_std_um)
-    here = involute_clearance(play, a, alpha)
-    off = np.array([involute_clearance(play + s * t, a, alpha) - here for t in steps])
+    nominal = involute_clearance(play, a, alpha)
+    off = np.array([involute_clearance(play + s * t, a, alpha) - nominal for t in steps])
     beyond = 0.5 * erfc(_steps_to_end(gear, bearing, play_std_um) / sqrt(2))
     return sqrt(float(weight @ off**2)), beyond

@@ -48,11 +48,11 @@ class ProcessId:
 
     @property
     def fate(self) -> Fate:
-        """Whether the process still runs; unknown where this one cannot see it."""
-        here = this_process()
-        if UNKNOWN in (self.machine, self.space, here.machine, here.space):
+        """Return whether the process still runs; unknown where this one cannot see it."""
+        current = this_process()
+        if UNKNOWN in (self.machine, self.space, current.machine, current.space):
             return "unknown"
-        if (self.machine, self.space) != (here.machine, here.space):
+        if (self.machine, self.space) != (current.machine, current.space):
             return "unknown"
         if not _exists(self.pid):
             return "gone"
@@ -63,27 +63,27 @@ class ProcessId:
 
 
 def this_process() -> ProcessId:
-    """The process that asks."""
+    """Return the id of the process that asks."""
     pid = os.getpid()
     return ProcessId(_machine(), _space(), pid, started(pid) or UNKNOWN)
 
 
 def parsed(text: str) -> ProcessId | None:
-    """A process by its text; what follows it is not looked at. None if the text is another."""
-    found = _TEXT.match(text)
-    return ProcessId(found[1], found[2], int(found[3]), found[4]) if found else None
+    """Return a process from its text; what follows it is not looked at. None if the text is another."""
+    match = _TEXT.match(text)
+    return ProcessId(match[1], match[2], int(match[3]), match[4]) if match else None
 
 
 @cache
 def _machine() -> str:
     if sys.platform == "linux":
         try:
-            told = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii")
+            identity = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii")
         except OSError:
             return UNKNOWN
     else:
-        told = socket.gethostname()
-    return f"{zlib.crc32(told.encode()):08x}"
+        identity = socket.gethostname()
+    return f"{zlib.crc32(identity.encode()):08x}"
 
 
 def _space() -> str:
@@ -112,7 +112,7 @@ def _exists(pid: int) -> bool:
 
 
 def started(pid: int) -> str | None:
-    """When a process started; None if it is no more, a zombie among them.
+    """Return when a process started; None if it has ended, or is a zombie.
 
     On Linux the kernel's own count: psutil adds the time of the boot, which moves with the clock.
     """

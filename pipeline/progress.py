@@ -34,7 +34,7 @@ class Progress:
         self.seconds: dict[str, float] = {}
 
     def note(self, text: str) -> None:
-        """One line with the time since the start.
+        """Write one line with the time since the start.
 
         Raises
         ------
@@ -55,11 +55,11 @@ class Progress:
             yield
         finally:
             whole = time.monotonic() - began
-            own = whole - inner.pop()
-            self.add(name, own)
+            seconds = whole - inner.pop()
+            self.add(name, seconds)
             if inner:
                 inner[-1] += whole
 
     def add(self, name: str, seconds: float) -> None:
-        """A stage's own time, such as of another process."""
+        """Add a stage's own time, such as of another process."""
         self.seconds[name] = self.seconds.get(name, 0.0) + seconds

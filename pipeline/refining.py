@@ -26,14 +26,14 @@ class Refining(Generic[T]):
         self.newest = next(answers)
 
     def until(self, enough: Callable[[T], bool]) -> T:
-        """The newest one, refined until it is enough or the last; a fault as of `last`."""
+        """Return the newest answer, refined until it is enough or the last; a fault as of `last`."""
         with self._refines:
             while not enough(self.newest) and self._next():
                 pass
             return self.newest
 
     def last(self) -> T:
-        """The one within the tolerance; the fault that ended the refinement is raised each time."""
+        """Return the answer within the tolerance; the fault that ended the refinement is raised each time."""
         return self.until(lambda answer: False)
 
     def _next(self) -> bool:

@@ -45,7 +45,7 @@ for 134."""
 
 
 def revolved(design: Design) -> Design:
-    """The bodies of revolution that stand for the design: no holes, teeth as their plain ring.
+    """Return the bodies of revolution that stand for the design: no holes, teeth as their plain ring.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def revolved(design: Design) -> Design:
 
 
 def with_equivalent_ring(design: Design) -> Design:
-    """With the plain ring that stands for drawn teeth, as in an analysis; errors as `revolved`."""
+    """Return the design with the plain ring that stands for drawn teeth; errors as `revolved`."""
     if design.flexspline.teeth == "none":
         return design
     cache = Cache(cache_folder(), lambda line: None)  # what matters comes as an error
@@ -63,7 +63,7 @@ def with_equivalent_ring(design: Design) -> Design:
 
 
 def stiffness(design: Design, name: PartName, relative_width: float) -> Stiffness:
-    """K_b of the load case "uniform", or K_e, of a design's part.
+    """Return K_b of the load case "uniform", or K_e, of a design's part [N·m/rad].
 
     Raises
     ------
@@ -71,12 +71,12 @@ def stiffness(design: Design, name: PartName, relative_width: float) -> Stiffnes
     ComputationError : as `torsion`.
     """
     part = with_equivalent_ring(design).part(name)
-    found = torsion(part, relative_width)
-    return found if part.shape == design.part(name).shape else of_toothed(found)
+    K = torsion(part, relative_width)
+    return K if part.shape == design.part(name).shape else of_toothed(K)
 
 
 def torsion(part: Part, relative_width: float) -> Stiffness:
-    """K_b of the load case "uniform", or K_e.
+    """Return K_b of the load case "uniform", or K_e [N·m/rad].
 
     `relative_width` is that of each body of revolution. What misses it has its reason in `shortfall`, here
     and below.
@@ -90,26 +90,26 @@ def torsion(part: Part, relative_width: float) -> Stiffness:
 
 
 def lobes(part: Part, supported: bool, relative_width: float) -> Stiffness:
-    """K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
+    """Return K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
     return rim(part, held_rim if supported else free_rim, relative_width)
 
 
 def rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
-    """K_b of a load case of the rim. Errors as `torsion`."""
+    """Return K_b of a load case of the rim. Errors as `torsion`."""
     return _of_holed(part, lambda body: _rim(body, solve, relative_width))
 
 
 def first_rim(part: Part, solve: RimSolve, relative_width: float) -> Stiffness:
-    """`rim` on the first mesh of each body that gives K to FIRST_HALF_WIDTH; to be asked for before it."""
+    """Return `rim` on each body's first mesh that gives K to FIRST_HALF_WIDTH; ask for it before `rim`."""
 
-    def enough(found: Stiffness) -> bool:
-        return found.half_width <= FIRST_HALF_WIDTH
+    def enough(K: Stiffness) -> bool:
+        return K.half_width <= FIRST_HALF_WIDTH
 
     return _of_holed(part, lambda body: _begun(body, solve, relative_width).until(enough))
 
 
 def contact(part: Part, relative_width: float) -> Stiffness:
-    """K_b under the lobe load, the seat resting on the wave generator; errors as `torsion`."""
+    """Return K_b under the lobe load, the seat resting on the wave generator; errors as `torsion`."""
     return _of_holed(part, lambda body: _contact(body, relative_width))
 
 
@@ -121,12 +121,12 @@ def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
 
     if part.name == "flexspline" and part.bolts is not None:
         return enclosed(part, solved)
-    found = solved(part.without_holes())
-    return replace(found, guaranteed=found.guaranteed and part.is_revolved)
+    K = solved(part.without_holes())
+    return replace(K, guaranteed=K.guaranteed and part.is_revolved)
 
 
 def of_1_GPa(part: Part) -> Part:
-    """What is solved and remembered: the same shape and Poisson's ratio."""
+    """Return the part that is solved and kept: the same shape and Poisson's ratio."""
     nu = part.material.poissons_ratio
     return replace(part, material=Material(name="1 GPa", youngs_modulus_GPa=1.0, poissons_ratio=nu))
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
-from flexspline.fea.axisymmetric.peak_refinement import StressProblem
+from flexspline.fea.axisymmetric.peak_refinement import HarmonicLoad, StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
-from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
+from flexspline.fea.axisymmetric.stress import ellipse, torque
 from flexspline.fea.types import Elastic, StressPeak
 from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.part import Part
@@ -23,34 +23,32 @@ KEPT_FIELDS = 32
 
 
 def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
-    """The peak stress on the wave generator's ellipse; errors as `torsion`."""
-    found = _ellipse_peak(_body(part), tolerance)
-    return found.times(w0_mm * part.material.youngs_modulus_GPa)
+    """Return the peak stress on the wave generator's ellipse; errors as `torsion`."""
+    return _ellipse_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def half_seat_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
-    """The same on a seat half as wide as the ring; errors as `torsion`."""
-    found = _half_seat_peak(_body(part), tolerance)
-    return found.times(w0_mm * part.material.youngs_modulus_GPa)
+    """Return the ellipse's peak on a seat half as wide as the ring; errors as `torsion`."""
+    return _half_seat_peak(_body(part), tolerance).times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def torque_peak(part: Part, torque_Nm: float, tolerance: float) -> StressPeak:
-    """The peak stress under a torque; errors as `torsion`."""
+    """Return the peak stress under a torque; errors as `torsion`."""
     return _torque_peak(_body(part), tolerance).times(torque_Nm)
 
 
 def ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
-    """Displacement and stress on the wave generator's ellipse; errors as `torsion`."""
+    """Return displacement and stress on the wave generator's ellipse; errors as `torsion`."""
     return _on_ellipse(part, w0_mm, _ellipse_field(_body(part), tolerance))
 
 
 def first_ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
-    """`ellipse_field` before any refinement; asked for before it, or the work is done twice."""
+    """Return `ellipse_field` before any refinement; ask for it first, or the work is done twice."""
     return _on_ellipse(part, w0_mm, _begun(_body(part), tolerance).newest)
 
 
 def torque_field(part: Part, torque_Nm: float, tolerance: float) -> RevolvedField:
-    """Displacement and stress under a torque; errors as `torsion`."""
+    """Return displacement and stress under a torque; errors as `torsion`."""
     unit = _torque_field(_body(part), tolerance)
     return _loaded(unit, torque_Nm, torque_Nm / part.material.youngs_modulus_GPa)
 
@@ -74,19 +72,23 @@ def _body(part: Part) -> Part:
     return of_1_GPa(part.without_holes())
 
 
+def _problem(part: Part, load: HarmonicLoad, tolerance: float) -> StressProblem:
+    return StressProblem(
+        part.meridian, Elastic.of(part.material), load, part.exclusion_mm, tolerance
+    )
+
+
 @lru_cache(maxsize=KEPT_PARTS)
 def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
     """For w0 = 1 mm."""
-    return ellipse_stress(
-        part.meridian, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance
-    ).peak
+    return _problem(part, ellipse(w0_mm=1.0), tolerance).field().peak
 
 
 @lru_cache(maxsize=KEPT_PARTS)
 def _half_seat_peak(part: Part, tolerance: float) -> StressPeak:
     """For w0 = 1 mm."""
-    narrow = with_narrow_seat(part.meridian, NARROW_SEAT)
-    return ellipse_stress(narrow, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance).peak
+    problem = _problem(part, ellipse(w0_mm=1.0), tolerance)
+    return replace(problem, outline=with_narrow_seat(part.meridian, NARROW_SEAT)).field().peak
 
 
 @lru_cache(maxsize=KEPT_PARTS)
@@ -98,20 +100,13 @@ def _torque_peak(part: Part, tolerance: float) -> StressPeak:
 @lru_cache(maxsize=KEPT_FIELDS)
 def _torque_field(part: Part, tolerance: float) -> RevolvedField:
     """For 1 N·m."""
-    return torsion_stress(
-        part.meridian, Elastic.of(part.material), part.driven, 1.0, part.exclusion_mm, tolerance
-    )
+    return _problem(part, torque(part.driven, torque_Nm=1.0), tolerance).field()
 
 
 @lru_cache(maxsize=1)
 def _begun(part: Part, tolerance: float) -> Refining[RevolvedField]:
     """For w0 = 1 mm; only the newest, for it holds its model."""
-    unit = ellipse(w0_mm=1.0)
-    return Refining(
-        StressProblem(
-            part.meridian, Elastic.of(part.material), unit, part.exclusion_mm, tolerance
-        ).fields()
-    )
+    return Refining(_problem(part, ellipse(w0_mm=1.0), tolerance).fields())
 
 
 @lru_cache(maxsize=KEPT_FIELDS)

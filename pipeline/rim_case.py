@@ -37,7 +37,7 @@ class LoadCase:
 def held_rim(
     outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
 ) -> Iterator[Stiffness]:
-    """The lobe load, the seat held radially."""
+    """Solve the lobe load with the seat held radially."""
     from flexspline.fea.axisymmetric.lobes import lobe_stiffnesses
 
     return lobe_stiffnesses(outline, material, True, relative_width, deadline)
@@ -46,7 +46,7 @@ def held_rim(
 def free_rim(
     outline: Meridian, material: Elastic, relative_width: float, deadline: Deadline
 ) -> Iterator[Stiffness]:
-    """The lobe load, the seat free."""
+    """Solve the lobe load with the seat free."""
     from flexspline.fea.axisymmetric.lobes import lobe_stiffnesses
 
     return lobe_stiffnesses(outline, material, False, relative_width, deadline)
@@ -61,5 +61,5 @@ RIM_CASES: Mapping[RimCase, LoadCase] = {
 
 
 def figure_of(case: RimCase) -> str:
-    """result.json's name of a case's stiffness, without its unit."""
+    """Return result.json's name of a case's stiffness, without its unit."""
     return f"K_b_{case}"

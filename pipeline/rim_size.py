@@ -15,7 +15,7 @@ processor each."""
 
 
 def copies_in_rim(model: PartModel) -> int:
-    """How many of torsion's sectors make the lobes' and the ellipse's."""
+    """Return how many of torsion's sectors make the lobes' and the ellipse's."""
     return round(sector_of(model.part, "ellipse").degrees / model.sector.degrees)
 
 
@@ -28,7 +28,7 @@ def fits_rim(model: PartModel, elements: int) -> bool:
 
 
 def most_in_sector(flexspline: PartModel) -> float:
-    """The largest number of elements for which `fits_rim` is true."""
+    """Return the largest number of elements for which `fits_rim` is true."""
     return _most_in_rim(flexspline) / copies_in_rim(flexspline)
 
 

@@ -52,42 +52,42 @@ def may_copy() -> bool:
 def results_of(
     tasks: Sequence[Callable[[], T]],
     begun: Callable[[], None] = lambda: None,
-    told: Callable[[int, T], None] = lambda number, result: None,
+    on_result: Callable[[int, T], None] = lambda number, result: None,
 ) -> list[T]:
-    """What each task returns, in their order; a task must change nothing that others look at.
+    """Return the result of each task, in order; a task must change nothing that others look at.
 
     A second process takes those not yet begun, if there may be one. Where it fails, whatever the reason, its
     tasks are done here once more, and what they raise then is raised. `begun` is called here after it began,
-    and may start threads: the copy is made. `told` is given each task's number and result as it is there, by
-    one of two threads.
+    and may start threads: the copy is made. `on_result` is given each task's number and result as it is
+    there, by one of two threads.
     """
     if len(tasks) < 2 or not may_copy():
         begun()
-        return [*_done_here(tasks, range(len(tasks)), told).values()]
+        return [*_done_here(tasks, range(len(tasks)), on_result).values()]
     copying = get_context("fork")
     with ExitStack() as open_files:
         try:
             numbers = open_files.enter_context(_TaskNumbers(len(tasks)))
             open_files.enter_context(shared_locks())
-            here, there = copying.Pipe(duplex=False)
+            receiving, sending = copying.Pipe(duplex=False)
             second = copying.Process(
-                target=_send_results, args=(there, numbers, tasks, os.getpid()), daemon=True
+                target=_send_results, args=(sending, numbers, tasks, os.getpid()), daemon=True
             )
             second.start()
         except OSError:  # no process or open file more is allowed, or no memory
             begun()
-            return [*_done_here(tasks, range(len(tasks)), told).values()]
-        there.close()
+            return [*_done_here(tasks, range(len(tasks)), on_result).values()]
+        sending.close()
         try:
             begun()
-            received = _Received(here, told)
-            done = _done_here(tasks, numbers, told)
+            received = _Received(receiving, on_result)
+            done = _done_here(tasks, numbers, on_result)
             done |= received.all()
         finally:
             second.kill()
             second.join()
         left = [n for n in range(len(tasks)) if n not in done]
-        done |= _done_here(tasks, left, told)
+        done |= _done_here(tasks, left, on_result)
         return [done[n] for n in range(len(tasks))]
 
 
@@ -123,13 +123,13 @@ def _can_copy() -> bool:
 
 
 def _done_here(
-    tasks: Sequence[Callable[[], T]], numbers: Iterable[int], told: Callable[[int, T], None]
+    tasks: Sequence[Callable[[], T]], numbers: Iterable[int], on_result: Callable[[int, T], None]
 ) -> dict[int, T]:
     """What tasks return, by their number."""
     done: dict[int, T] = {}
     for number in numbers:
         done[number] = tasks[number]()
-        told(number, done[number])
+        on_result(number, done[number])
     return done
 
 
@@ -149,15 +149,15 @@ def _send_results(
 class _Received:
     """What the second process sends, told as it comes by a thread of its own."""
 
-    def __init__(self, sent: Connection, told: Callable[[int, Any], None]) -> None:
-        self._sent, self._told = sent, told
+    def __init__(self, sent: Connection, on_result: Callable[[int, Any], None]) -> None:
+        self._sent, self._on_result = sent, on_result
         self._done: dict[int, Any] = {}
         self._fault: BaseException | None = None
         self._thread = Thread(target=self._receive, daemon=True)
         self._thread.start()
 
     def all(self) -> dict[int, Any]:
-        """Waits for the second process's end; raises what `told` raised."""
+        """Waits for the second process's end; raises what `on_result` raised."""
         self._thread.join()
         if self._fault is not None:
             raise self._fault
@@ -171,7 +171,7 @@ class _Received:
                 return
             self._done[number] = result
             try:
-                self._told(number, result)
+                self._on_result(number, result)
             except BaseException as fault:
                 self._fault = fault
                 return

@@ -33,7 +33,7 @@ twice this."""
 
 
 def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
-    """K_b under the lobe load by the solid model alone; `supported`: the seat may not move radially.
+    """Return K_b under the lobe load by the solid model alone; `supported`: the seat may not move radially.
 
     A rim that is held deforms as in torsion, and is solved on that mesh first where that promises the
     tolerance; else, and where it is free, it begins with a mesh of its own. A part that is not swept has the
@@ -53,7 +53,7 @@ def on_meshes(
     field: LobeSolver,
     meshes: Iterator[tuple[TetMesh, float]],
 ) -> Stiffness:
-    """K_b by a field on meshes as of `lobe_meshes`, from the cache where it is there, under that name.
+    """Return K_b by a field on the meshes of `lobe_meshes`, cached under that name.
 
     Raises
     ------
@@ -77,17 +77,17 @@ def on_meshes(
 
 
 def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMesh, float]]:
-    """Coarse to fine, of half a repeat, at least one; each with its scale of the error estimate.
+    """Yield at least one mesh of half a repeat, coarse to fine, each with its scale of the error estimate.
 
     Raises
     ------
     SolidError : the next one would be too large, or fails a check; or as `solid_lobes`.
     """
-    own = range(MESHES if flexspline.is_swept else 0)
-    begins = not own or (supported and _usual_of_held(flexspline) <= flexspline.tolerance)
+    numbers = range(MESHES if flexspline.is_swept else 0)
+    begins = not numbers or (supported and _usual_of_held(flexspline) <= flexspline.tolerance)
     if begins:
         yield _of_torsion(flexspline, supported)
-    for number in own:
+    for number in numbers:
         try:
             mesh = _numbered_mesh(flexspline, number)
         except SolidError:
@@ -99,10 +99,10 @@ def lobe_meshes(flexspline: PartModel, supported: bool) -> Iterator[tuple[TetMes
 
 def _usual_of_held(flexspline: PartModel) -> float:
     """Relative bounds ± that a held rim usually has on the mesh of `rim_mesh`; that mesh is made for it."""
-    found, elements = twisted_part(flexspline).stiffness, rim_mesh(flexspline).mesh.elements
-    level = max((m for m in found.levels if m.elements <= elements), default=found.levels[0],
+    torsion, elements = twisted_part(flexspline).stiffness, rim_mesh(flexspline).mesh.elements
+    level = max((m for m in torsion.levels if m.elements <= elements), default=torsion.levels[0],
                 key=lambda m: m.elements)  # fmt: skip
-    return USUAL_OVER_TORSION * (level.K_Nm_per_rad / found.K_Nm_per_rad - 1)
+    return USUAL_OVER_TORSION * (level.K_Nm_per_rad / torsion.K_Nm_per_rad - 1)
 
 
 def _of_torsion(flexspline: PartModel, supported: bool) -> tuple[TetMesh, float]:
@@ -119,12 +119,12 @@ def _numbered_mesh(flexspline: PartModel, number: int) -> TetMesh:
 
 
 def first_rim_spec(flexspline: PartModel) -> MeshSpec:
-    """Of a first mesh for the rim, of `most_in_sector` where it may be coarser."""
+    """Return the first rim mesh's specification, of `most_in_sector` elements where it may be coarser."""
     return PartMeshes(flexspline).coarsened(most_in_sector(flexspline))
 
 
 def swept_rim(flexspline: PartModel, spec: MeshSpec, finer: Finer | None = None) -> TetMesh:
-    """Swept, of half a repeat.
+    """Return a swept mesh of half a repeat.
 
     Raises
     ------

@@ -94,7 +94,7 @@ class TurnedField:
 
     @classmethod
     def of(cls, solved: SolvedStiffness) -> TurnedField:
-        """Of a solution."""
+        """Return the field of a solution."""
         return cls(solved.displacement, solved.K_energy)
 
 
@@ -144,7 +144,7 @@ def twisted(
     seconds: float = SOLID_SECONDS,
     second_s: float = MESHER_SECONDS,
 ) -> TwistedPart:
-    """Turned by 1 rad, refined until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
+    """Turn by 1 rad; refine until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
 
     `second_s`: of fTetWild for a mesh with longer edges.
 
@@ -171,9 +171,9 @@ def twisted(
     slow = MET
     while True:
         try:
-            found = _refined(meshes, first, tolerance, seconds)
-            short = found.stiffness.shortfall or slow
-            return replace(found, stiffness=replace(found.stiffness, shortfall=short))
+            solved = _refined(meshes, first, tolerance, seconds)
+            short = solved.stiffness.shortfall or slow
+            return replace(solved, stiffness=replace(solved.stiffness, shortfall=short))
         except OtherKindError as other:
             later = kinds[kinds.index(other.kind) :] if other.kind in kinds else ()
             if not later or later == kinds:
@@ -227,11 +227,11 @@ def _field(model: PartModel, tolerance: float) -> TorsionSolver:
     if not _cuts_alone(model, tolerance):
         return full
     part, whole = model.part, model.part.without_holes()
-    each = solved_torsions(
+    solutions = solved_torsions(
         whole.meridian, model.material, whole.driven, WHOLE_SHARE * tolerance, at_cuts(part),
         Deadline(STAGE_SECONDS),
     )  # fmt: skip
-    wholes = (WholeTurned(part, finer, coarser) for coarser, finer in pairwise(each))
+    wholes = (WholeTurned(part, finer, coarser) for coarser, finer in pairwise(solutions))
     with model.context.progress.stage(f"torsion of the {model.name} without {part.cuts}"):
         try:
             first = next(wholes)
@@ -251,8 +251,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         made.append(meshes.meshed(spec))
         if made[-1].kind != made[0].kind:
             raise OtherKindError(made[-1].kind)
-        if said := long_solve(model, made[-1].mesh.elements):
-            model.context.progress.note(f"  {model.name}: {said}")
+        if line := long_solve(model, made[-1].mesh.elements):
+            model.context.progress.note(f"  {model.name}: {line}")
         return made[-1].mesh
 
     def halved(mesh: TetMesh) -> TypeGuard[BisectableMesh]:
@@ -277,7 +277,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
     def most(mesh: TetMesh) -> float:
         return HALVED_ELEMENTS if halved(mesh) else max(UNHALVED_LAST, mesh.elements)
 
-    found = solid_stiffness(
+    refined = solid_stiffness(
         MeshSequence(mesher, first, by_error, most),
         _field(model, tolerance),
         tolerance,
@@ -285,10 +285,10 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
         Deadline(seconds),
     )
-    meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
+    meshed = [replace(made[0], mesh=mesh) for mesh in refined.meshes]
     rim = max(1, sum(fits_rim(model, m.mesh.elements) for m in meshed)) - 1
-    turned = None if found.turned is None else TurnedField.of(found.turned)
-    short = found.stiffness.shortfall
+    turned = None if refined.turned is None else TurnedField.of(refined.turned)
+    short = refined.stiffness.shortfall
     if short:
         short = replace(short, words=f"{short}; {remedy(model)}")
-    return TwistedPart(replace(found.stiffness, shortfall=short), meshed[-1], turned, meshed[rim])
+    return TwistedPart(replace(refined.stiffness, shortfall=short), meshed[-1], turned, meshed[rim])

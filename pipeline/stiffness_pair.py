@@ -33,7 +33,7 @@ class StiffnessPair:
 
 
 def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
-    """Both K [N·m/rad] as the user gives them, as doubles; None where one is to be solved.
+    """Return both K [N·m/rad] that the user gave, as doubles; None where one is to be solved.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
 def stiffness_pair(
     context: AnalysisContext, K_b: float | None = None, K_e: float | None = None
 ) -> StiffnessPair:
-    """The K given [N·m/rad], and by FE those that are not; a K given has no error of the solver.
+    """Return both K [N·m/rad], by FE where not given; a K that is given has no error of the solver.
 
     Raises
     ------
@@ -61,14 +61,14 @@ def stiffness_pair(
     from flexspline.pipeline.analysis import stiffnesses
 
     rim = context.design.solver.sum_at_lobes
-    found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
+    result = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []
     if K_b is None:
-        solved.append(found.in_sum(context.design))
+        solved.append(result.in_sum(context.design))
         K_b = solved[-1].K_Nm_per_rad
     if K_e is None:
-        solved.append(found.K_e)
+        solved.append(result.K_e)
         K_e = solved[-1].K_Nm_per_rad
     doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
     K_b, K_e = float(K_b), float(K_e)
-    return StiffnessPair(K_b, K_e, found, doubt / series_compliance(K_b, K_e))
+    return StiffnessPair(K_b, K_e, result, doubt / series_compliance(K_b, K_e))

@@ -19,14 +19,14 @@ FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
 """In the order of the reports."""
 
 
-def in_order(every: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
-    """Those of `FIGURES` that were found."""
-    return {name: found for name in FIGURES if (found := every.get(name)) is not None}
+def in_order(figures: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
+    """Return those of `FIGURES` that were solved, in their order."""
+    return {name: figure for name in FIGURES if (figure := figures.get(name)) is not None}
 
 
 @dataclass(frozen=True)
 class Stiffnesses:
-    """All stiffnesses that were found, and the peaks on the wave generator.
+    """All stiffnesses that were solved, and the peaks on the wave generator.
 
     Attributes
     ----------
@@ -60,16 +60,16 @@ class Stiffnesses:
 
     @property
     def K_b(self) -> Stiffness:
-        """Of the case "uniform"; raises NotFoundError."""
+        """K_b of the case "uniform"; raises NotFoundError."""
         return self["K_b"]
 
     @property
     def K_e(self) -> Stiffness:
-        """Raises NotFoundError."""
+        """K_e of the shaft; raises NotFoundError."""
         return self["K_e"]
 
     def in_sum(self, design: Design) -> Stiffness:
-        """The K_b that enters the backlash sum, by `solver.load_case`; raises NotFoundError."""
+        """Return the K_b that enters the backlash sum, by `solver.load_case`; raises NotFoundError."""
         return self[design.solver.K_b_in_sum]
 
     def has_sum(self, design: Design) -> bool:
@@ -77,7 +77,7 @@ class Stiffnesses:
         return {design.solver.K_b_in_sum, "K_e"} <= set(self.solved)
 
     def require(self, design: Design) -> None:
-        """Both K of the sum and K_b of the case "uniform", which every answer is about.
+        """Require both K of the sum and K_b of the case "uniform", which every answer is about.
 
         Raises
         ------
@@ -87,20 +87,20 @@ class Stiffnesses:
             self[name]
 
     def series_Nm_per_rad(self, design: Design) -> float:
-        """1/K = 1/K_e + 1/K_b; raises NotFoundError."""
+        """Return K of 1/K = 1/K_e + 1/K_b; raises NotFoundError."""
         return series_stiffness(self.in_sum(design).K_Nm_per_rad, self.K_e.K_Nm_per_rad)
 
 
 def series_bounds_Nm_per_rad(K_b: Stiffness, K_e: Stiffness) -> tuple[float, float]:
-    """1/(1/K_b + 1/K_e) at both parts' lower and at both parts' upper bounds."""
+    """Return K in series at both parts' lower and at both parts' upper bounds."""
     low = series_stiffness(K_b.lower_Nm_per_rad, K_e.lower_Nm_per_rad)
     high = series_stiffness(K_b.upper_Nm_per_rad, K_e.upper_Nm_per_rad)
     return low, high
 
 
 class NotFoundError(ComputationError):
-    """A figure that the answer needs failed: its `name`, and all that was `found` beside it."""
+    """A figure that the answer needs failed: its `name`, and all other `stiffnesses`."""
 
-    def __init__(self, name: str, why: str, found: Stiffnesses) -> None:
-        self.name, self.found = name, found
+    def __init__(self, name: str, why: str, stiffnesses: Stiffnesses) -> None:
+        self.name, self.stiffnesses = name, stiffnesses
         super().__init__(f"{name} was not found: {why}")

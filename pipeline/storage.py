@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def cache_folder() -> Path:
-    """`FLEXSPLINE_CACHE` if set, else the user's cache folder by the platform's custom."""
+    """Return `FLEXSPLINE_CACHE` if set, else the user's cache folder by the platform's custom."""
     chosen = os.environ.get("FLEXSPLINE_CACHE")
     if chosen:
         return Path(chosen)

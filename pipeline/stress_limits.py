@@ -69,17 +69,17 @@ class PassedLimit:
 
 
 def share_of_limit(peak: StressPeak, material: Material) -> float | None:
-    """Peak over the stated fatigue limit; None without one, and where the peak hangs on the stress rule."""
+    """Return peak over stated fatigue limit; None without one, or where the stress rule decides the peak."""
     if material.fatigue_limit_MPa is None or peak.at_excluded_border:
         return None
     return peak.mises_MPa / material.fatigue_limit_MPa
 
 
 def stated_limit(design: Design, name: str) -> tuple[float, str] | None:
-    """Fatigue limit [MPa] of the part that bears a peak, and the key that states it; None: not stated."""
+    """Return the fatigue limit [MPa] of the part that bears a peak, and the key that states it, if any."""
     limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
-    own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
-    return None if limit is None else (limit, f"material.{own}.fatigue_limit_MPa")
+    part = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
+    return None if limit is None else (limit, f"material.{part}.fatigue_limit_MPa")
 
 
 def is_compared(name: str, peak: Peak) -> bool:
@@ -93,7 +93,7 @@ def is_compared(name: str, peak: Peak) -> bool:
 
 
 def limits_passed(design: Design, peaks: Mapping[str, Peak]) -> Iterator[PassedLimit]:
-    """What is passed, for `peaks` by their names in result.json."""
+    """Return the limits that `peaks`, by their names in result.json, pass."""
     for name, peak in peaks.items():
         if not is_compared(name, peak):
             continue

@@ -32,12 +32,12 @@ NO_ROOM = {
 
 
 def mark() -> str:
-    """How the names of this process's unfinished files begin."""
+    """Return how the names of this process's unfinished files begin."""
     return f"{MARK}{this_process()}-"
 
 
 def unfinished(folder: Path) -> Path:
-    """A name in `folder` for a new file, which is to be moved into place by `os.replace`.
+    """Return a name in `folder` for a new file, which is to be moved into place by `os.replace`.
 
     Who knows the name before the file is there can remove it whenever a signal comes.
     """
@@ -93,18 +93,18 @@ def temporary_folder() -> Path:
 
 
 def clear(folder: Path) -> list[Path]:
-    """Remove what processes left that are no more; what was removed."""
-    gone = []
+    """Remove what ended processes left, and return it."""
+    removed = []
     with suppress(OSError):  # a folder that cannot be listed will say so when it is written to
         for entry in folder.glob(f"{MARK}*"):
             if _abandoned(entry):
                 _remove(entry)
-                gone.append(entry)
-    return gone
+                removed.append(entry)
+    return removed
 
 
 def discard(folder: Path, say: Callable[[str], None]) -> None:
-    """`clear`, and say what went."""
+    """Clear the folder, and say what was removed."""
     for entry in clear(folder):
         say(f"discarded {entry.name}, left unfinished by a process that was stopped")
 

@@ -25,7 +25,7 @@ from flexspline.pipeline.wave_generator import sharp_edges
 
 
 def torque_field(model: PartModel) -> SolidField:
-    """Displacement and stress under the design's torque T_L; the peak from the model that answers.
+    """Return displacement and stress under the torque T_L, with the peak of the model that answers.
 
     That of a flexspline with bolt holes is told by two bodies of revolution where these agree: a solid mesh's
     nodes beside the edge of the held face, where it often is, were up to a fifth off.
@@ -59,12 +59,12 @@ def torque_field(model: PartModel) -> SolidField:
 
 
 def _load(model: PartModel) -> BodyLoad:
-    torque, apart = model.context.design.load.torque_Nm, model.part.exclusion_mm
-    own, driven = model.material, model.part.driven
+    torque, exclusion_mm = model.context.design.load.torque_Nm, model.part.exclusion_mm
+    material, driven = model.material, model.part.driven
     tolerance = peak_tolerance(model.tolerance)
 
     def solve(outline: Meridian, deadline: Deadline) -> RevolvedField:
-        return torsion_stress(outline, own, driven, torque, apart, tolerance, deadline)
+        return torsion_stress(outline, material, driven, torque, exclusion_mm, tolerance, deadline)
 
     title = f"stress of the {model.name} under torque"
     return BodyLoad("torque_peak", title, solve, {"torque_Nm": torque})
@@ -75,7 +75,7 @@ def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
     half = twisted.stiffness.half_width
     if half <= tolerance:
         return MET
-    own, asked = percent(half), percent(tolerance)
+    reached, wanted = percent(half), percent(tolerance)
     return Shortfall(
-        f"it is computed on one mesh, whose own K is known to ± {own} where ± {asked} is asked"
+        f"it is computed on one mesh, whose own K is known to ± {reached} where ± {wanted} is asked"
     )

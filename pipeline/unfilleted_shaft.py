@@ -36,7 +36,7 @@ DIFFER = Shortfall(f"{LESS} and {MORE} differ by more")
 
 
 def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
-    """A shaft turned by 1 rad: by sweeps, else between two without fillets, else by fTetWild.
+    """Turn a shaft by 1 rad: by sweeps, else between two without fillets, else by fTetWild.
 
     Where those two differ by much, fTetWild comes before them.
 
@@ -65,7 +65,7 @@ def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
 
 
 def marked_unfilleted(field: SolidField) -> SolidField:
-    """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
+    """Return a cut body's field as one of the shaft; its peak is compared with no limit."""
     peak = field.peak
     excluded = f"{peak.excluded}, and {FILLETS}, which the mesh leaves out"
     judged = replace(peak, excluded=excluded, at_excluded_border=True, left_out=FILLETS)
@@ -87,8 +87,8 @@ def _hardly_differ(model: PartModel, tolerance: float) -> bool:
         )
     except ComputationError:
         return False
-    apart = more.K_Nm_per_rad / less.K_Nm_per_rad - 1
-    return apart / 2 <= max(tolerance, SMALL_DIFFERENCE)
+    difference = more.K_Nm_per_rad / less.K_Nm_per_rad - 1
+    return difference / 2 <= max(tolerance, SMALL_DIFFERENCE)
 
 
 def _between_shafts(model: PartModel, tolerance: float) -> TwistedPart:
@@ -101,19 +101,19 @@ def _between_shafts(model: PartModel, tolerance: float) -> TwistedPart:
     less = solved(bodies.cut, SOLID_SECONDS / 2)
     more = solved(bodies.whole, max(SOLID_SECONDS / 2, SOLID_SECONDS - both.elapsed()))
     names = Names(LESS, MORE, "solid", model.sector.label)
-    found = between(less.stiffness, more.stiffness, names)
-    levels, short = less.stiffness.levels, found.half_width > tolerance
+    enclosure = between(less.stiffness, more.stiffness, names)
+    levels, short = less.stiffness.levels, enclosure.half_width > tolerance
     shortfall = MET
     if short:
-        apart = more.stiffness.K_Nm_per_rad / less.stiffness.K_Nm_per_rad - 1
-        why = DIFFER if apart / 2 > tolerance else found.shortfall or DIFFER
+        difference = more.stiffness.K_Nm_per_rad / less.stiffness.K_Nm_per_rad - 1
+        why = DIFFER if difference / 2 > tolerance else enclosure.shortfall or DIFFER
         shortfall = replace(why, words=f"{why}; {REMEDY}")
     return replace(
         less,
         stiffness=replace(
-            found,
-            method=f"K is the middle of its bounds; {found.method}",
-            symmetry=f"{found.symmetry}, two shafts",
+            enclosure,
+            method=f"K is the middle of its bounds; {enclosure.method}",
+            symmetry=f"{enclosure.symmetry}, two shafts",
             levels=levels,
             shortfall=shortfall,
         ),

@@ -44,7 +44,7 @@ PLACE_TOLERANCE = 0.02
 
 
 def solid_ellipse(flexspline: PartModel) -> SolidField:
-    """The field of `ellipse` on the flexspline's quarter or half.
+    """Return the field of `ellipse` on the flexspline's quarter or half.
 
     A swept part is meshed again, fine where the peak of the part without its holes is; should the peak
     turn up elsewhere, there too. Any other part is solved on the mesh that gave K.
@@ -59,10 +59,10 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
             return replace(field, peak=replace(field.peak, shortfall=UNREFINED))
         field = _solved(flexspline, fine, w0)
         x, y, z = field.peak.at_mm
-        found = hypot(x, y), z
-        if dist(found, expected) < _reach_mm(flexspline):
+        peak_place = hypot(x, y), z
+        if dist(peak_place, expected) < _reach_mm(flexspline):
             return field
-        finer = _refined_at(flexspline, expected, found)
+        finer = _refined_at(flexspline, expected, peak_place)
         return _solved(flexspline, finer, w0) if finer else field
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0}
@@ -70,7 +70,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
 
 def coarse_ellipse(flexspline: PartModel) -> SolidField:
-    """The same on the mesh that gave K, or on a coarser one, for pictures: another model gives the peak."""
+    """Return the field on K's mesh or a coarser one, for pictures: another model gives the peak."""
     w0 = flexspline.context.design.w0_mm
 
     def make() -> SolidField:
@@ -86,10 +86,10 @@ def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     if not flexspline.is_swept:
         return None
     try:
-        found = ellipse_stress(
+        field = ellipse_stress(
             part.meridian, flexspline.material, w0, part.exclusion_mm, PLACE_TOLERANCE
         )
-        return found.peak_rz
+        return field.peak_rz
     except ComputationError:
         return None
 
@@ -142,5 +142,5 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
 
 
 def sharp_edges(model: PartModel, meshed: MeshedPart) -> SharpEdges:
-    """The stress rule's edges and its distance."""
+    """Return the stress rule's edges and its distance."""
     return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, model.part.exclusion_mm)

@@ -180,5 +180,5 @@ def kept(job: Job, as_json: bool) -> Iterator[None]:
     try:
         yield
     except NotFoundError as fault:
-        keep(job, fault.found, as_json)
+        keep(job, fault.stiffnesses, as_json)
         raise

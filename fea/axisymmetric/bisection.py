@@ -12,7 +12,7 @@ from flexspline.fea.edges import SIDES, edge_numbers
 
 
 def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
-    """The mesh with marked triangles (mask (m,)) cut in four and their neighbours kept conforming.
+    """Cut the marked triangles (mask (m,)) in four; cut their neighbours so that the mesh stays conforming.
 
     New nodes of fillets are put on the exact arc.
     """
@@ -35,7 +35,7 @@ class Box:
     longest_mm: float
 
     def meets(self, mesh: MeridianMesh) -> np.ndarray:
-        """Mask (m,) of the triangles whose own ranges meet it."""
+        """Return the mask (m,) of the triangles whose ranges of r and z meet the box."""
         corner = mesh.points[mesh.triangles]
         low, high = corner.min(axis=1), corner.max(axis=1)
         ends = np.array([self.r, self.z])
@@ -55,7 +55,7 @@ def refined_within(mesh: MeridianMesh, boxes: Sequence[Box], share: float = 1.0)
 
 
 def refined_repeatedly(mesh: MeridianMesh, marked: Iterable[np.ndarray]) -> MeridianMesh:
-    """As `refined` with the first mask (m,), then the pieces of the triangles of the next, and so on."""
+    """Refine the first mask's triangles (m,), then the pieces of the next mask's, and so on."""
     piece_of = np.arange(mesh.elements)
     for mask in marked:
         mesh, parent = refined_with_parents(mesh, mask[piece_of])
@@ -64,7 +64,7 @@ def refined_repeatedly(mesh: MeridianMesh, marked: Iterable[np.ndarray]) -> Meri
 
 
 def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
-    """As `refined`, and of which triangle of `mesh` each of its triangles is a piece."""
+    """Refine, and return for each new triangle the triangle of `mesh` that it is a piece of."""
     tri = _longest_first(mesh.points, mesh.triangles)
     n = len(mesh.points)
     keys, of = np.unique(edge_numbers(tri[:, SIDES], n), return_inverse=True)

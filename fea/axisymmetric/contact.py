@@ -44,7 +44,7 @@ def contact_stiffness(
     deadline: Deadline = NO_DEADLINE,
     tolerance: float = inf,
 ) -> Stiffness:
-    """K_b with the torque at the lobes and a seat that may lift off.
+    """Return K_b with the torque at the lobes and a seat that may lift off.
 
     `supported` is K_b with the seat held, solved to a known accuracy: the ratio of the two K on one
     mesh is far more accurate than either, so K = supported × ratio, and the bounds add the ratio's
@@ -58,13 +58,13 @@ def contact_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    found = _Ratios(material, tolerance - supported.half_width)
-    own = refine(found, triangulate(outline), deadline)
-    # that of the held seat where a better machine may mend it
-    shortfall = own if own and not supported.shortfall.of_the_machine else supported.shortfall
-    ratio, lowest, highest = found.ratios[-1], found.lowest, 1.0
-    if len(found.ratios) > 1:
-        ratio, doubt = settling(found.ratios)
+    ratios = _Ratios(material, tolerance - supported.half_width)
+    shortfall = refine(ratios, triangulate(outline), deadline)
+    if not shortfall or supported.shortfall.of_the_machine:  # a better machine may mend it
+        shortfall = supported.shortfall
+    ratio, lowest, highest = ratios.ratios[-1], ratios.lowest, 1.0
+    if len(ratios.ratios) > 1:
+        ratio, doubt = settling(ratios.ratios)
         lowest, highest = ratio - doubt, ratio + doubt
     return Stiffness(
         K_Nm_per_rad=supported.K_Nm_per_rad * ratio,
@@ -75,9 +75,9 @@ def contact_stiffness(
         symmetry=supported.symmetry,
         method=(
             f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} times K with the seat"
-            f" held; bounds: those of that K, widened {_doubt_of(len(found.ratios))}"
+            f" held; bounds: those of that K, widened {_doubt_of(len(ratios.ratios))}"
         ),
-        levels=tuple(found.levels),
+        levels=tuple(ratios.levels),
         shortfall=shortfall,
     )
 
@@ -116,7 +116,7 @@ class _Ratios:
 
 
 def settling(ratios: Sequence[float]) -> tuple[float, float]:
-    """The ratio that meshes with ever halved edges tend to, and how far it may be off.
+    """Return the limit of the ratios on meshes with ever halved edges, and its possible error.
 
     Two meshes give only their difference. From three, the last two changes give the ratio of a geometric
     series.
@@ -139,7 +139,7 @@ def _doubt_of(meshes: int) -> str:
 
 
 def lift_off_forces(seat: SeatCompliance) -> np.ndarray:
-    """Contact forces (a, m) [N/rad], nowhere pulling.
+    """Return contact forces (a, m) [N/rad], none of them pulling.
 
     Raises
     ------
@@ -149,5 +149,5 @@ def lift_off_forces(seat: SeatCompliance) -> np.ndarray:
 
 
 def held_forces(seat: SeatCompliance) -> np.ndarray:
-    """Forces (a, m) [N/rad] of a seat that is held radially everywhere: the case `lobes`."""
+    """Return the forces (a, m) [N/rad] of a seat that is held radially everywhere: the case `lobes`."""
     return seat.resisted(-seat.free)

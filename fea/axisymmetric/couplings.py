@@ -46,15 +46,15 @@ class BlockPlaces:
 
     @classmethod
     def of(cls, rows: np.ndarray, columns: np.ndarray, count: int) -> BlockPlaces:
-        """Of pairs (row, column) of `count` nodes, in the order of the rows, then of the columns."""
+        """Find the places for pairs (row, column) of `count` nodes, ordered by rows, then by columns."""
         blocks = np.bincount(rows, minlength=count)
         before = np.cumsum(blocks) - blocks
         first = 9 * before[rows] + 3 * (np.arange(len(rows)) - before[rows])
         component = np.arange(3)
         of_block = first + 3 * blocks[rows] * component[:, None, None] + component[:, None]
-        found = np.empty(9 * len(rows), np.int32)
-        found[of_block] = 3 * columns + component[:, None]
-        return cls(starts_of(np.repeat(3 * blocks, 3)), found, of_block)
+        indices = np.empty(9 * len(rows), np.int32)
+        indices[of_block] = 3 * columns + component[:, None]
+        return cls(starts_of(np.repeat(3 * blocks, 3)), indices, of_block)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Couplings:
     material: Elastic
 
     def stiffness(self, n: int, components: tuple[int, ...], around: float) -> csr_matrix:
-        """Stiffness (3·count, 3·count) between components of harmonic n, with `around` for ∫cos² nφ dφ.
+        """Return the stiffness (3·count, 3·count) between components of harmonic n; `around` is ∫cos² nφ dφ.
 
         Unknown 3·node + component; entries of components that are not asked for are 0.
         """
@@ -83,16 +83,16 @@ class Couplings:
 
     def _torsion(self, n: int) -> dict[tuple[int, int], np.ndarray]:
         lam, mu = self.material.lam, self.material.mu
+        rr, ro, o_r, oo, zz = self._of_torsion
         return {
-            (TANGENTIAL, TANGENTIAL): n * n * (lam + 2 * mu) * self._oo
-            + mu * (self._rr - self._ro - self._or + self._oo + self._zz)
+            (TANGENTIAL, TANGENTIAL): n * n * (lam + 2 * mu) * oo + mu * (rr - ro - o_r + oo + zz)
         }
 
     def _all(self, n: int) -> dict[tuple[int, int], np.ndarray]:
         lam, mu = self.material.lam, self.material.mu
         both = lam + 2 * mu
-        rr, rz, ro, zz, zo, oo = self._rr, self._rz, self._ro, self._zz, self._zo, self._oo
-        zr, o_r, oz = rz[self._pairs.transposed], self._or, zo[self._pairs.transposed]
+        rr, ro, o_r, oo, zz = self._of_torsion
+        rz, zr, zo, oz = self._of_meridian
         return {
             (RADIAL, RADIAL): both * (rr + oo) + lam * (ro + o_r) + mu * (zz + n * n * oo),
             (AXIAL, AXIAL): both * zz + mu * (rr + n * n * oo),
@@ -114,29 +114,13 @@ class Couplings:
         return self._pairs.summed(form.elemental(self.space.basis).data)
 
     @cached_property
-    def _rr(self) -> np.ndarray:
-        return self._entries(RR)
+    def _of_torsion(self) -> tuple[np.ndarray, ...]:
+        """RR, RO and its transpose, OO, ZZ: all that torsion needs."""
+        rr, ro, oo, zz = map(self._entries, (RR, RO, OO, ZZ))
+        return rr, ro, ro[self._pairs.transposed], oo, zz
 
     @cached_property
-    def _rz(self) -> np.ndarray:
-        return self._entries(RZ)
-
-    @cached_property
-    def _ro(self) -> np.ndarray:
-        return self._entries(RO)
-
-    @cached_property
-    def _or(self) -> np.ndarray:
-        return self._ro[self._pairs.transposed]
-
-    @cached_property
-    def _zz(self) -> np.ndarray:
-        return self._entries(ZZ)
-
-    @cached_property
-    def _zo(self) -> np.ndarray:
-        return self._entries(ZO)
-
-    @cached_property
-    def _oo(self) -> np.ndarray:
-        return self._entries(OO)
+    def _of_meridian(self) -> tuple[np.ndarray, ...]:
+        """RZ and ZO, each with its transpose."""
+        rz, zo = map(self._entries, (RZ, ZO))
+        return rz, rz[self._pairs.transposed], zo, zo[self._pairs.transposed]

@@ -69,26 +69,26 @@ class PatternSolver:
         self._places: EntryPlaces | None = None
 
     def free_part(self, matrix: csr_matrix, free: np.ndarray) -> csr_matrix:
-        """K between the free unknowns, a mask (N,) of those of `matrix`."""
+        """Return K between the free unknowns; `free` is a mask (N,) of the unknowns of `matrix`."""
         entries = self._entries
         if entries is None or not entries.are_of(matrix, free):
             entries = self._entries = _FreeEntries.of(matrix, free)
         return entries.between(matrix)
 
     def solve(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
-        """K⁻¹ f of loads (N,) or (N, k).
+        """Return K⁻¹ f of loads (N,) or (N, k).
 
         Raises
         ------
         RuntimeError : K is singular, in SuperLU's words.
         SolveError : it is, in Pardiso's; or the residual of the solution says so.
         """
-        found = solved(matrix, loads) if pardiso() is None else self._by_pardiso(matrix, loads)
-        if not relative_residual(matrix, found, loads) <= LARGEST_RESIDUAL:
+        solution = solved(matrix, loads) if pardiso() is None else self._by_pardiso(matrix, loads)
+        if not relative_residual(matrix, solution, loads) <= LARGEST_RESIDUAL:
             raise SolveError(
                 "the direct solver left a residual: part of the model may be unsupported"
             )
-        return found
+        return solution
 
     def _by_pardiso(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
         """K⁻¹ f; by SuperLU where K is small and its places are new."""
@@ -105,11 +105,11 @@ class PatternSolver:
 
 
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
-    """‖Ax − b‖/‖b‖, of b = 0 that of x = 0."""
-    off, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
-    return float(off) / max(float(of_load), ABOVE_ZERO)
+    """Return ‖Ax − b‖/‖b‖; for b = 0 that of x = 0."""
+    residual, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
+    return float(residual) / max(float(of_load), ABOVE_ZERO)
 
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
-    """K⁻¹ f of loads (N,) or (N, k), K symmetric positive definite, once."""
+    """Return K⁻¹ f of loads (N,) or (N, k) for a symmetric positive definite K that is used once."""
     return superlu(matrix, PLANE_PANEL).solve(loads)

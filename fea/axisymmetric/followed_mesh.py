@@ -11,7 +11,7 @@ from flexspline.geometry.outline import Meridian
 
 
 def followed(mesh: MeridianMesh, outline: Meridian) -> MeridianMesh:
-    """The mesh on another outline with as many segments, a small step away.
+    """Return the mesh on another outline with as many segments, a small step away.
 
     Boundary vertices keep their place along their segment; inner ones follow their neighbours.
     """
@@ -39,6 +39,6 @@ def _along(
     if centre is None:
         d = ends[1] - ends[0]
         return (points - ends[0]) @ d / (d @ d)
-    begin, off = ends[0] - centre, points - np.array(centre)
-    angle = np.arctan2(off[:, 1], off[:, 0]) - np.arctan2(begin[1], begin[0])
+    begin, from_centre = ends[0] - centre, points - np.array(centre)
+    angle = np.arctan2(from_centre[:, 1], from_centre[:, 0]) - np.arctan2(begin[1], begin[0])
     return ((angle + np.pi) % (2 * np.pi) - np.pi) / sweep

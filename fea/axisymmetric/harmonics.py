@@ -142,22 +142,22 @@ class HarmonicModel:
         return PatternSolver()
 
     def stiffness(self, wave: Harmonic) -> csr_matrix:
-        """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.
+        """Return a harmonic's stiffness matrix (3·count, 3·count) of the whole circle, without supports.
 
         Components that the harmonic does not have are left empty.
         """
         return self.couplings.stiffness(wave.n, wave.components, wave.around)
 
     def on(self, patch: str) -> np.ndarray:
-        """P2 numbers on a patch."""
+        """Return the P2 numbers on a patch."""
         return self.space.on(patch)
 
     def held(self, patch: str) -> list[Fixed]:
-        """All components 0 on a patch."""
+        """Return the constraints that make all components 0 on a patch."""
         return [Fixed(self.on(patch), c) for c in (RADIAL, TANGENTIAL, AXIAL)]
 
     def solve(self, wave: Harmonic, fixed: list[Fixed], load: np.ndarray) -> Amplitudes:
-        """Amplitudes under nodal forces `load` (3·count,) [N]; a later `fixed` wins.
+        """Return the amplitudes under nodal forces `load` (3·count,) [N]; a later `fixed` wins.
 
         Raises
         ------
@@ -182,7 +182,7 @@ class HarmonicModel:
         return Amplitudes(u, twice_energy, float(u @ load), residual, len(right))
 
     def prescribed(self, wave: Harmonic, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
-        """Mask of the free unknowns, and all unknowns with the values prescribed, else 0."""
+        """Return the mask of the free unknowns, and all unknowns with the values prescribed, else 0."""
         count = self.space.count
         axis = np.flatnonzero(self.space.places[:, 0] < SAME_mm)
         if wave.n == 1 and len(axis):
@@ -195,7 +195,7 @@ class HarmonicModel:
         return ~mask.ravel(), value.ravel()
 
     def pressed(self, patch: str, component: int, wave: Harmonic) -> np.ndarray:
-        """Nodal forces (3·count,) [N] of a traction of amplitude 1 MPa on a straight patch."""
+        """Return nodal forces (3·count,) [N] of a traction of amplitude 1 MPa on a straight patch."""
         load = np.zeros((self.space.count, 3))
         load[:, component] = wave.around * self._pressure(patch)
         return load.ravel()

@@ -24,7 +24,7 @@ methods (S. J. Wright, Primal-Dual Interior-Point Methods, SIAM 1997)."""
 
 
 def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Forces p (n,) ≥ 0 that leave gaps free + matrix @ p ≥ 0 and act only where the gap is closed.
+    """Return forces p (n,) ≥ 0 that leave gaps free + matrix @ p ≥ 0 and act only where a gap is closed.
 
     `matrix` (n, n) is symmetric and positive definite; `free` (n,) are the gaps without forces.
 
@@ -38,10 +38,10 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
     force = np.full(len(free), size / matrix.diagonal().mean())
     gap = np.full(len(free), size)
     for _ in range(MOST_ROUNDS):
-        off = gap - free - matrix @ force
+        residual = gap - free - matrix @ force
         both = force * gap
         if (
-            np.abs(off).max() < SEAT_RESIDUAL * size
+            np.abs(residual).max() < SEAT_RESIDUAL * size
             and both.max() < SEAT_RESIDUAL * size * force.max()
         ):
             return force
@@ -49,8 +49,8 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
 
         def towards(product: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             """Newton step to forces times gaps larger by `product`, and to gaps that fit."""
-            by = cho_solve(factor, product / force + off)  # noqa: B023  (called in this round only)
-            return by, matrix @ by - off  # noqa: B023
+            by = cho_solve(factor, product / force + residual)  # noqa: B023  (called in this round only)
+            return by, matrix @ by - residual  # noqa: B023
 
         push, lift = towards(-both)
         push, lift = towards(corrected(force, gap, push, lift))

@@ -81,12 +81,12 @@ class LobeSolution:
 
     @property
     def estimate(self) -> float:
-        """Relative error of the energy that the recovery sees."""
+        """Relative error of the energy by the recovery estimate."""
         return float(self.error.sum()) / (2 * sum(self.energies))
 
 
 def lobe_coefficient(n: int) -> float:
-    """t_n of two bumps of height 1, n even: 1/π ∫ t cos nφ dφ, half of it for n = 0.
+    """Return t_n of two bumps of height 1, n even: 1/π ∫ t cos nφ dφ, half of it for n = 0.
 
     One bump's integral is p² sin nφ0 / (n (p² - n²)) with p = π/φ0; φ0 for n = 0, φ0/2 for n = p.
     """
@@ -99,7 +99,7 @@ def lobe_coefficient(n: int) -> float:
 
 
 def lobe_harmonic(n: int) -> Harmonic:
-    """The load's harmonic n; of n = 0 it is torsion."""
+    """Return the load's harmonic n; for n = 0 it is torsion."""
     return Harmonic(n, torsion=n == 0)
 
 
@@ -122,7 +122,7 @@ def solved_lobes(
     boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedLobes]:
-    """The fields of the last of `lobe_stiffnesses`, on meshes finer and finer in boxes.
+    """Yield the lobes' fields on meshes that become finer and finer in boxes.
 
     As of `torsion.solved_torsions`.
 
@@ -132,7 +132,7 @@ def solved_lobes(
     """
     lobes, mesh = _RevolvedLobes(material, supported, relative_width), triangulate(outline)
     for _ in finer_in_boxes(lobes, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
-        yield SolvedLobes(lobes.space, lobes.found.amplitudes)
+        yield SolvedLobes(lobes.space, lobes.solution.amplitudes)
 
 
 def lobe_stiffnesses(
@@ -142,7 +142,7 @@ def lobe_stiffnesses(
     relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[Stiffness]:
-    """K_b under the lobe load, as each mesh gives it.
+    """Yield K_b under the lobe load for each mesh.
 
     `supported`: the seat may not move radially, else it is free.
 
@@ -171,14 +171,15 @@ class _RevolvedLobes:
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
-        self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
+        self.solution = solve_lobes(model, self._supported, TAIL_SHARE * self._relative_width)
         self.space, self.mesh = model.space, mesh
-        self.estimate.add(MeshResult(_level(model, self.found), self.found.estimate))
+        result = MeshResult(_level(model, self.solution), self.solution.estimate)
+        self.estimate = self.estimate.with_mesh(result)
 
     @property
     def missing(self) -> float:
         """Relative error of K by the harmonics left out."""
-        return self.found.tail / sum(self.found.energies)
+        return self.solution.tail / sum(self.solution.energies)
 
     @property
     def met(self) -> bool:
@@ -187,18 +188,18 @@ class _RevolvedLobes:
 
     def stiffness(self, shortfall: Shortfall) -> Stiffness:
         """K between its bounds."""
-        found, missing = self.estimate.at_given_torque(self.missing), self.missing
-        last = 2 * (len(self.found.energies) - 1)
+        bounds, missing = self.estimate.at_given_torque(self.missing), self.missing
+        last = 2 * (len(self.solution.energies) - 1)
         method = (
             f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery estimate"
             f" (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by {self.estimate.scale:.2f}"
         )
-        harmonics = tuple(each / sum(self.found.energies) for each in self.found.energies)
-        K = self.estimate.stiffness(found, "axisymmetric", "body of revolution", method, shortfall)
+        harmonics = tuple(energy / sum(self.solution.energies) for energy in self.solution.energies)
+        K = self.estimate.stiffness(bounds, "axisymmetric", "body of revolution", method, shortfall)
         return replace(K, harmonics=harmonics)
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        error = self.found.error
+        error = self.solution.error
         shares = (LOBE_BULK, LOBE_TWICE_SHARE)
         return refined_repeatedly(mesh, [bulk(error, share) for share in shares])
 
@@ -239,12 +240,12 @@ def solve_lobes(
     return LobeSolution(tuple(energies), tuple(amplitudes), work, rest, error, unknowns, worst)
 
 
-def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:
+def _level(model: HarmonicModel, solution: LobeSolution) -> MeshLevel:
     return MeshLevel(
         shortest_edge_mm=model.mesh.shortest_edge_mm,
         elements=model.mesh.elements,
-        dofs=found.unknowns,
-        K_Nm_per_rad=found.K,
-        K_check_Nm_per_rad=stiffness_of_work(found.work),
-        residual=found.residual,
+        dofs=solution.unknowns,
+        K_Nm_per_rad=solution.K,
+        K_check_Nm_per_rad=stiffness_of_work(solution.work),
+        residual=solution.residual,
     )

@@ -9,7 +9,7 @@ MOST_TRIANGLES = 400_000
 
 
 def bulk(share: np.ndarray, fraction: float) -> np.ndarray:
-    """Mask (m,) of the fewest triangles whose `share` (m,) sums to the given fraction of the whole.
+    """Return the mask (m,) of the fewest triangles whose `share` (m,) sums to a fraction of the whole.
 
     Source: W. Dörfler, SIAM J. Numer. Anal. 33 (1996) 1106-1124.
     """

@@ -12,7 +12,7 @@ from flexspline.geometry.outline import Meridian, SAME_mm
 
 
 def edge_lengths(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(m, 3) from each corner to the next, of `points` (n, 2) and `triangles` (m, 3)."""
+    """Return the lengths (m, 3) from each corner to the next, of `points` (n, 2) and `triangles` (m, 3)."""
     corner = points[triangles]
     return np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
 
@@ -87,25 +87,25 @@ class MeridianMesh:
 
     @property
     def elements(self) -> int:
-        """How many triangles."""
+        """Number of triangles."""
         return len(self.triangles)
 
     def longest_edges(self) -> np.ndarray:
-        """(m,) of each triangle [mm]."""
+        """Longest edge of each triangle (m,) [mm]."""
         return np.asarray(edge_lengths(self.points, self.triangles).max(axis=1))
 
     @property
     def shortest_edge_mm(self) -> float:
-        """Of all triangles."""
+        """Shortest edge of all triangles."""
         return shortest_edge_mm(self.points, self.triangles)
 
     def segments_of(self, patch: str) -> np.ndarray:
-        """Indices of the outline's segments that carry a patch name."""
+        """Return the indices of the outline's segments that carry a patch name."""
         return np.array([i for i, s in enumerate(self.outline.segments) if s.patch == patch], int)
 
 
 def signed_areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Areas (m,) [mm²], positive for counter-clockwise triangles."""
+    """Return areas (m,) [mm²], positive for counter-clockwise triangles."""
     a, b, c = (points[triangles[:, i]] for i in range(3))
     u, v = b - a, c - a
     return (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
@@ -114,11 +114,11 @@ def signed_areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def edge_middles(
     outline: Meridian, points: np.ndarray, edges: np.ndarray, edge_segment: np.ndarray
 ) -> np.ndarray:
-    """Middles (k, 2) of boundary edges, on the arc where the segment is one."""
+    """Return middles (k, 2) of boundary edges, on the arc where the segment is one."""
     middle = points[edges].mean(axis=1)
     for index, s in enumerate(outline.segments):
         mine = edge_segment == index
         if s.centre is not None and mine.any():
-            off = middle[mine] - np.array(s.centre)
-            middle[mine] = s.centre + off * (s.radius / np.linalg.norm(off, axis=1))[:, None]
+            radial = middle[mine] - np.array(s.centre)
+            middle[mine] = s.centre + radial * (s.radius / np.linalg.norm(radial, axis=1))[:, None]
     return middle

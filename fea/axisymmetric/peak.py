@@ -33,7 +33,7 @@ class StressError(ComputationError):
 
 @dataclass(frozen=True)
 class MeridianPeak:
-    """Largest von Mises stress that counts.
+    """The largest von Mises stress beyond the excluded distance.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class MeridianPeak:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _PeakPoint:
     """Largest squared stress at a distance, where, and which lattice points (m, q) count."""
 
     square: float
@@ -83,7 +83,7 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
     parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
     either = np.maximum(*parts)
 
-    def search(distance_mm: float, at: np.ndarray, within_mm: float) -> _Found | None:
+    def search(distance_mm: float, at: np.ndarray, within_mm: float) -> _PeakPoint | None:
         counts = lattice.counting(distance_mm)
         if within_mm < inf:
             counts &= np.linalg.norm(lattice.places - at, axis=2) <= within_mm
@@ -97,23 +97,23 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
             if max(direct, shear) > best and np.linalg.norm(rim_place - at) <= within_mm:
                 best, place = float(max(direct, shear)), rim_place
                 at_sine = bool(shear > direct)
-        return _Found(best, place, at_sine, counts)
+        return _PeakPoint(best, place, at_sine, counts)
 
-    found = search(exclusion_mm, np.zeros(2), inf)
-    if found is None:
+    peak = search(exclusion_mm, np.zeros(2), inf)
+    if peak is None:
         raise StressError(f"no point of the part is {exclusion_mm:g} mm away from its sharp edges")
-    peak_at = found.place
+    peak_at = peak.place
 
     def largest(distance_mm: float, within_mm: float = inf) -> float | None:
         other = search(distance_mm, peak_at, within_mm)
         return None if other is None else float(np.sqrt(other.square))
 
     return MeridianPeak(
-        float(np.sqrt(found.square)),
-        (float(found.place[0]), float(found.place[1])),
-        found.at_sine,
-        np.asarray(found.counts.any(axis=1)),
-        np.sqrt(np.where(found.counts, either, 0.0).max(axis=1)),
+        float(np.sqrt(peak.square)),
+        (float(peak.place[0]), float(peak.place[1])),
+        peak.at_sine,
+        np.asarray(peak.counts.any(axis=1)),
+        np.sqrt(np.where(peak.counts, either, 0.0).max(axis=1)),
         np.sqrt(either.max(axis=1)),
         largest,
     )

@@ -70,23 +70,23 @@ class StressProblem:
     deadline: Deadline = NO_DEADLINE
 
     def field(self) -> RevolvedField:
-        """The answer.
+        """Refine until the peak is within the tolerance, and return the last field.
 
         Raises
         ------
         MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
         """
-        found = _MeshedField(self)
-        shortfall = refine(found, triangulate(self.outline), self.deadline, MOST_TRIANGLES)
-        return found.field(shortfall)
+        meshed = _MeshedField(self)
+        shortfall = refine(meshed, triangulate(self.outline), self.deadline, MOST_TRIANGLES)
+        return meshed.field(shortfall)
 
     def fields(self) -> Iterator[RevolvedField]:
-        """The results of each mesh whose peak counts; the last one is `field`. Errors as there."""
-        found = _MeshedField(self)
+        """Yield the field of each mesh whose peak counts; the last one is `field`, and so are the errors."""
+        meshed = _MeshedField(self)
         mesh = triangulate(self.outline)
-        for shortfall in refinements(found, mesh, self.deadline, MOST_TRIANGLES):
-            if found.peaks or shortfall:
-                yield found.field(shortfall)
+        for shortfall in refinements(meshed, mesh, self.deadline, MOST_TRIANGLES):
+            if meshed.peaks or shortfall:
+                yield meshed.field(shortfall)
 
 
 class _MeshedField:
@@ -106,15 +106,15 @@ class _MeshedField:
         wanted, load = self._problem, self._problem.load
         model = HarmonicModel(mesh, wanted.material)
         solved = load.solve(model)
-        found = recovered(model, load.wave, solved.values)
-        peak = peak_stress(model, found.nodal, wanted.exclusion_mm)
-        self._model, self._solved, self._found, self._peak = model, solved, found, peak
-        energy_error = float(found.error.sum() / found.energy.sum())
+        recovery = recovered(model, load.wave, solved.values)
+        peak = peak_stress(model, recovery.nodal, wanted.exclusion_mm)
+        self._model, self._solved, self._recovery, self._peak = model, solved, recovery, peak
+        energy_error = float(recovery.error.sum() / recovery.energy.sum())
         self._levels.append(
             StressLevel(mesh.elements, solved.unknowns, peak.mises_MPa, energy_error)
         )
-        told = peak.largest(TWICE * wanted.exclusion_mm) or peak.mises_MPa  # as well as the peak
-        loud = peak.anywhere > BORDER_SHARE * min(told, peak.mises_MPa)
+        farther = peak.largest(TWICE * wanted.exclusion_mm) or peak.mises_MPa  # as well as the peak
+        loud = peak.anywhere > BORDER_SHARE * min(farther, peak.mises_MPa)
         self._coarse = loud & coarse_at_border(mesh, wanted.exclusion_mm)
         if len(self._levels) > 1 or not self._coarse.any():
             self.peaks.append(peak.mises_MPa)
@@ -138,12 +138,12 @@ class _MeshedField:
         )
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        found, peak = self._found, self._peak
+        recovery, peak = self._recovery, self._peak
         allowed = LOCAL_ERROR_SHARE * self._problem.tolerance * peak.mises_MPa
-        wrong = peak.counted & (found.largest_misfit > allowed)
+        wrong = peak.counted & (recovery.largest_misfit > allowed)
         # far below the peak, stresses may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
-        marked = bulk(found.error, PEAK_BULK) | (wrong & near) | self._coarse
+        marked = bulk(recovery.error, PEAK_BULK) | (wrong & near) | self._coarse
         mesh, parent = refined_with_parents(mesh, marked)
         border = self._coarse[parent]
         while (still := border & coarse_at_border(mesh, self._problem.exclusion_mm)).any():
@@ -157,14 +157,14 @@ class _MeshedField:
         phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
         r, z = peak.rz
         at = (r * cos(phi), r * sin(phi), z)
-        found = judged(peak.mises_MPa, at, self._problem.exclusion_mm, peak.largest)
+        judged_peak = judged(peak.mises_MPa, at, self._problem.exclusion_mm, peak.largest)
         return RevolvedField(
             n=wave.n,
             places=space.places,
             triangles=space.dofs,
             displacement=self._solved.values.reshape(-1, 3),
-            stress=self._found.nodal,
-            peak=replace(found, shortfall=shortfall),
+            stress=self._recovery.nodal,
+            peak=replace(judged_peak, shortfall=shortfall),
             peak_rz=peak.rz,
             peak_phi=phi,
             levels=tuple(self._levels),

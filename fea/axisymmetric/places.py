@@ -33,7 +33,7 @@ class Places:
 
     @classmethod
     def of(cls, space: Space, r: np.ndarray, z: np.ndarray) -> Places:
-        """Points at r, z (k,) [mm]; one that is just outside is seen at the nearest number's place.
+        """Find points at r, z (k,) [mm]; a point just outside takes the values at the nearest number's place.
 
         Raises
         ------
@@ -56,8 +56,8 @@ class Places:
         return cls(space.basis.element_dofs[:, triangle], tuple(shapes))
 
     def see(self, field: np.ndarray) -> Any:
-        """A field (count,) there: scikit-fem's, its values (k,) and slopes `grad` (2, k)."""
+        """Return a field (count,) there as scikit-fem's: values (k,) and slopes `grad` (2, k)."""
         numbered = list(zip(field[self.dofs], self.shapes, strict=True))
-        value = sum(own * np.asarray(shape)[:, 0] for own, shape in numbered)
-        slope = sum(own * shape.grad[:, :, 0] for own, shape in numbered)
+        value = sum(amplitude * np.asarray(shape)[:, 0] for amplitude, shape in numbered)
+        slope = sum(amplitude * shape.grad[:, :, 0] for amplitude, shape in numbered)
         return DiscreteField(value, grad=slope)

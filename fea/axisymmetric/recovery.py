@@ -44,17 +44,17 @@ class Recovered:
 
     @cached_property
     def energy(self) -> np.ndarray:
-        """(m,) ∫σ:C⁻¹:σ of each triangle, whole circle [N·mm]."""
+        """∫σ:C⁻¹:σ of each triangle (m,) over the whole circle [N·mm]."""
         return self._twice_energy(self.raw)
 
     @cached_property
     def error(self) -> np.ndarray:
-        """(m,) the same of smoothed less raw stress."""
+        """The same integral (m,) of smoothed less raw stress [N·mm]."""
         return self._twice_energy(self.misfit)
 
     @cached_property
     def largest_misfit(self) -> np.ndarray:
-        """(m,) largest von Mises stress of smoothed less raw stress in each triangle [MPa]."""
+        """Largest von Mises stress of smoothed less raw stress in each triangle (m,) [MPa]."""
         return np.sqrt(np.maximum(*mises_parts(self.misfit)).max(axis=1))
 
     def _twice_energy(self, stress: Parts) -> np.ndarray:
@@ -75,35 +75,35 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
 
 
 def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
-    """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
+    """Return amplitudes (m, q) [MPa] of the harmonic's stresses from U, V, W (3·count,) [mm]."""
     r = np.asarray(basis.global_coordinates())[0]
     amplitude = displacement.reshape(-1, 3).T
-    seen = {component: basis.interpolate(amplitude[component]) for component in wave.components}
-    return stress_of(wave, material, r, seen)
+    fields = {component: basis.interpolate(amplitude[component]) for component in wave.components}
+    return stress_of(wave, material, r, fields)
 
 
-def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, seen: Mapping[int, Any]) -> Parts:
-    """Amplitudes [MPa] at radii r [mm] of scikit-fem's fields U, V, W [mm] there, by their component."""
+def stress_of(wave: Harmonic, material: Elastic, r: np.ndarray, fields: Mapping[int, Any]) -> Parts:
+    """Return stress amplitudes [MPa] at radii r [mm] from scikit-fem's fields U, V, W [mm] there."""
     lam, mu, n = material.lam, material.mu, wave.n
     if wave.torsion:
-        v = seen[TANGENTIAL]
+        v = fields[TANGENTIAL]
         v_r, v_z = v.grad
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
-    u, w = seen[RADIAL], seen[AXIAL]
+    u, w = fields[RADIAL], fields[AXIAL]
     (u_r, u_z), (w_r, w_z) = u.grad, w.grad
-    around = (u + n * seen[TANGENTIAL]) / r if n else u / r
+    around = (u + n * fields[TANGENTIAL]) / r if n else u / r
     mean = lam * (u_r + around + w_z)
-    found = {
+    parts = {
         RR: mean + 2 * mu * u_r,
         THETA_THETA: mean + 2 * mu * around,
         ZZ: mean + 2 * mu * w_z,
         RZ: mu * (u_z + w_r),
     }
     if n:
-        v = seen[TANGENTIAL]
+        v = fields[TANGENTIAL]
         v_r, v_z = v.grad
-        found |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
-    return found
+        parts |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
+    return parts
 
 
 def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:
@@ -115,7 +115,7 @@ def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:
 
 
 def mises_parts(stress: Parts) -> tuple[np.ndarray, np.ndarray]:
-    """A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ; absent stresses are 0."""
+    """Return A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ; absent stresses are 0."""
     none = np.zeros_like(next(iter(stress.values())))
     rr, tt, zz, rz, rt, tz = (stress.get(k, none) for k in range(6))
     direct = ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) / 2 + 3 * rz**2

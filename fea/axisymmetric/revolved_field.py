@@ -51,7 +51,7 @@ class RevolvedField:
     levels: tuple[StressLevel, ...]
 
     def mises(self, phi: float) -> np.ndarray:
-        """von Mises stress (count,) at the nodes at an angle [MPa]."""
+        """Return the von Mises stress (count,) at the nodes at an angle [MPa]."""
         direct, shear = mises_parts(dict(enumerate(self.stress.T)))
         if self.n == 0:
             return np.sqrt(direct + shear)

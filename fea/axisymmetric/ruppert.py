@@ -20,45 +20,45 @@ TOUCH = 1e-7
 
 
 def lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Of the edges (k,)."""
+    """Return the lengths of the edges (k,)."""
     return np.asarray(np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1))
 
 
 def is_flat(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Mask (m,) of triangles that are lines but for rounding, turned either way."""
+    """Return the mask (m,) of triangles that are lines but for rounding, turned either way."""
     longest = edge_lengths(points, triangles).max(axis=1)
     return np.asarray(np.abs(signed_areas(points, triangles)) <= FLAT_SHARE * longest**2)
 
 
 def encroached(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Mask (k,) of edges with a point inside their diametral circle; the ends lie on the circle."""
+    """Return the mask (k,) of edges with a point, not an end, inside their diametral circle."""
     nearest, _ = cKDTree(points).query(points[edges].mean(axis=1))
     return np.asarray(nearest < lengths(points, edges) / 2 * (1 - TOUCH))
 
 
 def circumradii(sides: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """abc/(4A) (m,) of triangles by the lengths of their sides (m, 3) and their areas (m,), above 0."""
+    """Return abc/(4A) (m,) of triangles with sides (m, 3) and areas (m,), above 0."""
     return np.asarray(sides.prod(axis=1) / (4 * np.maximum(areas, ABOVE_ZERO)))
 
 
 def circumcentres(corner: np.ndarray) -> np.ndarray:
-    """(m, 2) of triangles by their corners (m, 3, 2)."""
+    """Return the circumcentres (m, 2) of triangles with corners (m, 3, 2)."""
     u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
     twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
-    return np.asarray(corner[:, 0] + off / twice[:, None])
+    offset = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
+    return np.asarray(corner[:, 0] + offset / twice[:, None])
 
 
 def is_poor(sides: np.ndarray, radii: np.ndarray, smallest_angle: float) -> np.ndarray:
-    """Mask (m,) of triangles with a smaller angle [rad]: the shortest side is 2R sin of the least one."""
+    """Return the mask (m,) of triangles with a smaller angle [rad]: the shortest side is 2R sin of it."""
     return np.asarray(radii > sides.min(axis=1) / (2 * np.sin(smallest_angle)))
 
 
 def improvements(
     points: np.ndarray, edges: np.ndarray, poor: np.ndarray, radii: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Circumcentres (j, 2) worth adding of poor triangles (m, 3), and the mask of edges to halve instead."""
+    """Return circumcentres (j, 2) to add for poor triangles (m, 3), and a mask of edges to halve."""
     if not len(poor):
         return np.empty((0, 2)), np.zeros(len(edges), bool)
     order = np.argsort(-radii)
@@ -73,16 +73,16 @@ def improvements(
 def entering(
     points: np.ndarray, edges: np.ndarray, centres: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of centres (c,) inside the diametral circle of an edge, and of edges (k,) entered so."""
+    """Return masks of centres (c,) inside the diametral circle of an edge, and of edges (k,) entered so."""
     half = lengths(points, edges) / 2 * (1 - TOUCH)
-    found = cKDTree(centres).query_ball_point(points[edges].mean(axis=1), half)
+    of_edges = cKDTree(centres).query_ball_point(points[edges].mean(axis=1), half)
     within = np.zeros(len(centres), bool)
-    within[np.array([i for inside in found for i in inside], int)] = True
-    return within, np.array([len(inside) > 0 for inside in found])
+    within[np.array([i for inside in of_edges for i in inside], int)] = True
+    return within, np.array([len(inside) > 0 for inside in of_edges])
 
 
 def independent(centres: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Of centres (c, 2), in their order, those (j, 2) not within `reach` (c,) of one taken before."""
+    """Return those (j, 2) of the centres (c, 2), in order, not within `reach` (c,) of one before."""
     if not len(centres):
         return centres
     near = cKDTree(centres).query_ball_point(centres, reach)

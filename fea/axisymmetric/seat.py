@@ -38,20 +38,20 @@ class SeatCompliance:
 
     @property
     def matrix(self) -> np.ndarray:
-        """(a·m, a·m) radial displacement per force, place by place within each angle [mm per N/rad]."""
+        """Radial displacement per force (a·m, a·m), place by place within each angle [mm per N/rad]."""
         a, m = self.free.shape
         blocks = np.fft.irfft(self.harmonics, a, axis=0)  # by difference of angle
         i, j = np.meshgrid(np.arange(a), np.arange(a), indexing="ij")
         return blocks[(i - j) % a].transpose(0, 2, 1, 3).reshape(a * m, a * m)
 
     def resisted(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces (a, m) [N/rad] that alone displace the seat radially by (a, m) [mm]."""
+        """Return the forces (a, m) [N/rad] that alone displace the seat radially by (a, m) [mm]."""
         waves = np.fft.rfft(displacement, axis=0)
         parts = np.linalg.solve(self.harmonics, np.stack([waves.real, waves.imag], axis=2))
         return np.fft.irfft(parts[..., 0] + 1j * parts[..., 1], len(displacement), axis=0)
 
     def stiffness(self, force: np.ndarray) -> float:
-        """K [N·m/rad] with seat forces (a, m) [N/rad]; their share of the work by Betti's theorem."""
+        """Return K [N·m/rad] with seat forces (a, m) [N/rad], whose work is by Betti's theorem."""
         work = self.free_work + 2 * pi / len(self.angles) * float((force * self.free).sum())
         return stiffness_of_work(work)
 
@@ -110,7 +110,7 @@ def _spread(model: HarmonicModel, seat: np.ndarray, most: int) -> np.ndarray:
 def responses(
     model: HarmonicModel, wave: Harmonic, loads: np.ndarray, also: list[Fixed] | None = None
 ) -> np.ndarray:
-    """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held, and what is `also` fixed."""
+    """Return displacements (3·count, k) under nodal forces (3·count, k); `mount` and `also` are held."""
     free, _ = model.prescribed(wave, [*model.held("mount"), *(also or [])])
     out = np.zeros_like(loads)
     inside = model.solver.free_part(model.stiffness(wave), free)

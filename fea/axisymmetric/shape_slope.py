@@ -22,17 +22,17 @@ from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.outline import Meridian
 
 
-def moved_stiffness(found: Twist, outline: Meridian) -> float:
-    """Twice the energy per rad² [N·m/rad] of the held field on another outline, a small step away.
+def moved_stiffness(solved: Twist, outline: Meridian) -> float:
+    """Return twice the energy per rad² [N·m/rad] of the held field on another outline, a small step away.
 
     Raises
     ------
     HeldSurfaceError : the outline has new corners, and a surface that is held or turned moves.
     """
-    if len(outline.segments) != len(found.mesh.outline.segments):
-        return found.K_Nm_per_rad + layer_stiffness(found, outline)
-    model = HarmonicModel(followed(found.mesh, outline), found.material)
+    if len(outline.segments) != len(solved.mesh.outline.segments):
+        return solved.K_Nm_per_rad + layer_stiffness(solved, outline)
+    model = HarmonicModel(followed(solved.mesh, outline), solved.material)
     values = np.zeros((model.space.count, 3))
-    values[:, TANGENTIAL] = found.rotation * model.space.places[:, 0]
+    values[:, TANGENTIAL] = solved.rotation * model.space.places[:, 0]
     u = values.ravel()
     return float(u @ (model.stiffness(TWIST) @ u)) / NMM_PER_NM

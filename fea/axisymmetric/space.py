@@ -36,7 +36,7 @@ class Space:
 
     @property
     def count(self) -> int:
-        """How many numbers there are."""
+        """Number of P2 numbers."""
         return int(self.basis.N)
 
     @cached_property
@@ -60,11 +60,11 @@ class Space:
         return np.asarray(self.basis.global_coordinates())[0]
 
     def on(self, boundary: str) -> np.ndarray:
-        """Sorted numbers on a named boundary, its ends included; none where the part has no such boundary."""
+        """Return the sorted numbers on a named boundary, its ends included; none where it does not exist."""
         return self.numbers.get(boundary, np.empty(0, int))
 
     def values(self, field: np.ndarray) -> np.ndarray:
-        """A field (count,) at the quadrature points (m, q), where no gradient is asked for."""
+        """Return a field (count,) at the quadrature points (m, q), without its gradient."""
         return field[self.dofs] @ self._shape_functions
 
     @cached_property
@@ -74,7 +74,7 @@ class Space:
 
 
 def curved(mesh: MeridianMesh, degree: int) -> Space:
-    """P2 with fillets followed by curved edges: edge middles on the arc, geometry as the fields.
+    """Return P2 with fillets followed by curved edges: edge middles on the arc, geometry as the fields.
 
     Patches are boundaries by their names; `degree` is the quadrature's.
 
@@ -102,7 +102,7 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
 def straight(
     mesh: MeridianMesh, vertices: np.ndarray, degree: int, boundaries: Mapping[str, np.ndarray]
 ) -> Space:
-    """P2 on the mesh's straight triangles, vertices at (n, 2), quadrature of a polynomial degree.
+    """Return P2 on the mesh's straight triangles, vertices at (n, 2), quadrature of a polynomial degree.
 
     `boundaries` gives the segments of the outline that each name stands for.
     """
@@ -113,7 +113,7 @@ def straight(
 
 
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
-    """A `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
+    """Return a `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
     mesh = Triangles(np.ascontiguousarray(vertices.T), old.mesh.t)
     basis = ScalarBasis(mesh, old.elem, intorder=degree, dofs=old.dofs)
@@ -144,7 +144,7 @@ def _space(basis: Any, mesh: MeridianMesh, facets: np.ndarray) -> Space:
 
 
 def at_points(space: Space, at: np.ndarray) -> Any:
-    """The basis at other points (2, q) of each reference triangle, to look at fields there."""
+    """Return the basis at other points (2, q) of each reference triangle, to evaluate fields there."""
     basis = space.basis
     weights = np.full(at.shape[1], 0.5 / at.shape[1])
     return ScalarBasis(

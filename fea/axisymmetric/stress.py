@@ -25,7 +25,7 @@ def ellipse_stress(
     tolerance: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> RevolvedField:
-    """The field of the load `ellipse`, refined until its peak is known; see `StressProblem`.
+    """Return the field of the load `ellipse`, refined until its peak is known; see `StressProblem`.
 
     Raises
     ------
@@ -44,13 +44,13 @@ def torsion_stress(
     tolerance: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> RevolvedField:
-    """The field of the load `torque`; the rest as `ellipse_stress`."""
+    """Return the field of the load `torque`; parameters and errors are those of `ellipse_stress`."""
     load = torque(driven, torque_Nm)
     return StressProblem(outline, material, load, exclusion_mm, tolerance, deadline).field()
 
 
 def ellipse(w0_mm: float) -> HarmonicLoad:
-    """`mount` held and `seat` moved radially by w0 cos 2φ, otherwise free."""
+    """Return the load that holds `mount` and moves `seat` radially by w0 cos 2φ."""
     wave = Harmonic(2)
 
     def solve(model: HarmonicModel) -> Amplitudes:
@@ -61,7 +61,7 @@ def ellipse(w0_mm: float) -> HarmonicLoad:
 
 
 def torque(driven: str, torque_Nm: float) -> HarmonicLoad:
-    """`mount` held and `driven` turned rigidly by a torque."""
+    """Return the load that holds `mount` and turns `driven` rigidly by a torque."""
     wave = Harmonic(0, torsion=True)
 
     def solve(model: HarmonicModel) -> Amplitudes:

@@ -23,8 +23,8 @@ class HeldSurfaceError(ComputationError):
         super().__init__(f"the outline gets new corners and its {patch} moves")
 
 
-def layer_stiffness(found: Twist, outline: Meridian) -> float:
-    """Stiffness that the thin layers between the solved and another outline add [N·m/rad], to first order.
+def layer_stiffness(solved: Twist, outline: Meridian) -> float:
+    """Return the stiffness of the layers between the solved and another outline [N·m/rad], first order.
 
     On a free surface only the strain along it is left, γ = r ∂ψ/∂s; dA = 2πr ds.
 
@@ -32,8 +32,8 @@ def layer_stiffness(found: Twist, outline: Meridian) -> float:
     ------
     HeldSurfaceError : a patch moves; its share is no matter of the energy alone.
     """
-    mesh = found.mesh
-    space = HarmonicModel(mesh, found.material).space
+    mesh = solved.mesh
+    space = HarmonicModel(mesh, solved.material).space
     ends = space.places[space.rim[:, :2]]
     along = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1)
@@ -45,17 +45,17 @@ def layer_stiffness(found: Twist, outline: Meridian) -> float:
         thickness = ((_nearest(outline, exact) - exact) * outward).sum(axis=1)
         _check_patches(mesh, thickness)
         slopes = np.array([4 * t - 3, 4 * t - 1, 4 - 8 * t])  # of the edge's shape functions
-        strain = at[:, 0] * (found.rotation[space.rim] @ slopes) / length
-        shear = found.material.mu * strain**2
+        strain = at[:, 0] * (solved.rotation[space.rim] @ slopes) / length
+        shear = solved.material.mu * strain**2
         added += float((shear * thickness * 2 * np.pi * at[:, 0] * length).sum()) / LAYER_POINTS
     return added / NMM_PER_NM
 
 
 def _nearest(outline: Meridian, at: np.ndarray) -> np.ndarray:
     """The outline's nearest points to points (n, 2)."""
-    found = np.stack([s.nearest(at) for s in outline.segments])
-    closest = np.linalg.norm(found - at, axis=2).argmin(axis=0)
-    return found[closest, np.arange(len(at))]
+    nearest = np.stack([s.nearest(at) for s in outline.segments])
+    closest = np.linalg.norm(nearest - at, axis=2).argmin(axis=0)
+    return nearest[closest, np.arange(len(at))]
 
 
 def _check_patches(mesh: MeridianMesh, thickness: np.ndarray) -> None:

@@ -38,7 +38,7 @@ def torsional_stiffness(
     relative_width: float,
     deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
-    """Torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
+    """Return the torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
 
     `driven` is "mesh" for a flexspline, "grip" for a shaft. `relative_width` is the wanted
     (upper - lower)/K as a fraction (0.001 is 0.1 %); the mesh is refined where the two fields
@@ -55,8 +55,8 @@ def torsional_stiffness(
     Source: J. H. Michell, Proc. London Math. Soc. 31 (1899) 130-146, for the two fields.
     """
     boundary = sorted_boundary(outline, driven)
-    found, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
-    return found.stiffness(refine(found, mesh, deadline, MOST_TRIANGLES))
+    bounds, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
+    return bounds.stiffness(refine(bounds, mesh, deadline, MOST_TRIANGLES))
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def solved_torsions(
     boxes: Sequence[Box],
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[SolvedTorsion]:
-    """`torsional_stiffness` with its field, on meshes whose triangles in boxes become finer and finer.
+    """Yield `torsional_stiffness` with its field, on meshes that become finer and finer in boxes.
 
     Edges there are as the boxes ask on the first, and half as long on each mesh after it, until a third one
     would have more than MOST_TRIANGLES_WITHIN triangles.
@@ -85,9 +85,9 @@ def solved_torsions(
     PatchError, MeshingError, OutOfTimeError
     """
     boundary = sorted_boundary(outline, driven)
-    found, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
-    for shortfall in finer_in_boxes(found, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
-        yield SolvedTorsion(found.stiffness(shortfall), found.turn)
+    bounds, mesh = _Bounds(boundary, relative_width, material), _first_mesh(outline, boundary)
+    for shortfall in finer_in_boxes(bounds, mesh, boxes, deadline, MOST_TRIANGLES_WITHIN):
+        yield SolvedTorsion(bounds.stiffness(shortfall), bounds.turn)
 
 
 def _first_mesh(outline: Meridian, boundary: Boundary) -> MeridianMesh:
@@ -104,11 +104,11 @@ class _Bounds:
         self.levels: list[MeshLevel] = []
 
     def solve(self, mesh: MeridianMesh) -> None:
-        found = bracket(mesh, self._boundary)
+        bounds = bracket(mesh, self._boundary)
         # every mesh's bounds hold, so the best of all do
-        self.lower, self.upper = max(self.lower, found.lower), min(self.upper, found.upper)
-        self.levels.append(_level(mesh, found, self._per_G))
-        self._share, self.turn, self.mesh = found.share, found.turn, mesh
+        self.lower, self.upper = max(self.lower, bounds.lower), min(self.upper, bounds.upper)
+        self.levels.append(_level(mesh, bounds, self._per_G))
+        self._share, self.turn, self.mesh = bounds.share, bounds.turn, mesh
 
     @property
     def met(self) -> bool:
@@ -138,12 +138,12 @@ class _Bounds:
         )
 
 
-def _level(mesh: MeridianMesh, found: Bracket, per_G: float) -> MeshLevel:
+def _level(mesh: MeridianMesh, bounds: Bracket, per_G: float) -> MeshLevel:
     return MeshLevel(
         shortest_edge_mm=mesh.shortest_edge_mm,
         elements=mesh.elements,
-        dofs=found.unknowns,
-        K_Nm_per_rad=found.upper * per_G,
-        K_check_Nm_per_rad=found.reaction * per_G,
-        residual=found.residual,
+        dofs=bounds.unknowns,
+        K_Nm_per_rad=bounds.upper * per_G,
+        K_check_Nm_per_rad=bounds.reaction * per_G,
+        residual=bounds.residual,
     )

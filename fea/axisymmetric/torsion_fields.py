@@ -82,12 +82,12 @@ class Bracket:
 
 
 def touching_axis(mesh: MeridianMesh) -> np.ndarray:
-    """Mask (m,) of triangles with a corner on r = 0."""
+    """Return the mask (m,) of triangles with a corner on r = 0."""
     return mesh.on_axis()[mesh.triangles].any(axis=1)
 
 
 def across_from_axis(mesh: MeridianMesh, boundary: Boundary) -> np.ndarray:
-    """Mask (m,) of triangles that reach from the axis to another free piece: too large for φ."""
+    """Return the mask (m,) of triangles from the axis to another free piece, which are too large for φ."""
     other = (boundary.piece >= 0) & (boundary.piece != boundary.axis)
     reached = np.zeros(len(mesh.points), bool)
     reached[mesh.edges[other[mesh.edge_segment]]] = True
@@ -95,7 +95,7 @@ def across_from_axis(mesh: MeridianMesh, boundary: Boundary) -> np.ndarray:
 
 
 def bracket(mesh: MeridianMesh, boundary: Boundary) -> Bracket:
-    """Solve both problems on one mesh."""
+    """Solve both problems on one mesh, and return its bounds for G = 1."""
     roles = {"held": boundary.held, "driven": boundary.driven}
     pieces = {_piece(k): np.flatnonzero(boundary.piece == k) for k in range(boundary.pieces)}
     outer = straight(mesh, mesh.containing(), PRIMAL_DEGREE, roles | pieces)
@@ -127,7 +127,7 @@ def _piece(number: int) -> str:
 
 
 def inverse_radius_bound(space: Space) -> np.ndarray:
-    """p(r) ≥ 1/r at the quadrature points (m, q); 0 on triangles that touch the axis."""
+    """Return p(r) ≥ 1/r at the quadrature points (m, q); 0 on triangles that touch the axis."""
     corner = space.places[space.dofs[:, :3], 0]
     a, b = corner.min(axis=1)[:, None], corner.max(axis=1)[:, None]
     c, r = (a + b) / 2, space.r
@@ -174,13 +174,13 @@ def _tied(space: Space, mesh: MeridianMesh, boundary: Boundary) -> csr_matrix:
     for piece in range(boundary.pieces):
         piece_of[space.on(_piece(piece))] = piece
     zero |= piece_of == ground
-    own = ~zero & (piece_of < 0)
-    number[own] = np.arange(own.sum())
+    untied = ~zero & (piece_of < 0)
+    number[untied] = np.arange(untied.sum())
     others = [p for p in range(boundary.pieces) if p != ground]
     for k, piece in enumerate(others):
-        number[piece_of == piece] = own.sum() + k
+        number[piece_of == piece] = untied.sum() + k
     rows = np.flatnonzero(~zero)
-    shape = space.count, int(own.sum()) + len(others)
+    shape = space.count, int(untied.sum()) + len(others)
     return csr_matrix((np.ones(len(rows)), (rows, number[rows])), shape=shape)
 
 

@@ -66,8 +66,8 @@ def triangulate(outline: Meridian, inner: tuple[Segment, ...] = ()) -> MeridianM
             triangles = _inside(points, edges)
             added, crowded = _improvements(points, edges, triangles)
             if not len(added) and not crowded.any():
-                own = segment < len(outline.segments)
-                return _checked(outline, points, triangles, edges[own], segment[own])
+                on_outline = segment < len(outline.segments)
+                return _checked(outline, points, triangles, edges[on_outline], segment[on_outline])
             points = np.concatenate([points, added])
         points, edges, segment = _halved(lines, points, edges, segment, crowded)
     raise MeshingError(
@@ -139,8 +139,8 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     side = triangles[:, [1, 2, 0]] * n + triangles[:, [2, 0, 1]]  # opposite each corner
     forward = np.isin(side, edges[:, 0] * n + edges[:, 1])
     backward = np.isin(side, edges[:, 1] * n + edges[:, 0])
-    own, corner = np.nonzero((across >= 0) & ~forward & ~backward)
-    links = coo_matrix((np.ones(len(own)), (own, across[own, corner])), shape=2 * (len(side),))
+    tri, corner = np.nonzero((across >= 0) & ~forward & ~backward)
+    links = coo_matrix((np.ones(len(tri)), (tri, across[tri, corner])), shape=2 * (len(side),))
     _, region = connected_components(links, directed=False)
     inside = forward.any(axis=1) & ~is_flat(points, triangles)
     return triangles[np.isin(region, region[inside])]

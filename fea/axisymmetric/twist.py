@@ -36,19 +36,19 @@ class Twist:
 
 
 def twist(outline: Meridian, material: Elastic, driven: str, relative_error: float) -> Twist:
-    """Refined until the recovery estimate of K's relative error is below `relative_error`.
+    """Solve torsion; refine until the estimated relative error of K is below `relative_error`.
 
     Raises
     ------
     MeshingError, HarmonicError, ToleranceError
     """
-    found = _TwistRefinement(material, driven, relative_error)
-    if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
-        raise ToleranceError(f"the energy is off by {found.error:.2g}", why)
-    r = found.model.space.places[:, 0]
-    turned = found.solved.values.reshape(-1, 3)[:, TANGENTIAL]
+    finest = _TwistRefinement(material, driven, relative_error)
+    if why := refine(finest, triangulate(outline), most_elements=MOST_TRIANGLES):
+        raise ToleranceError(f"the energy is off by {finest.error:.2g}", why)
+    r = finest.model.space.places[:, 0]
+    turned = finest.solved.values.reshape(-1, 3)[:, TANGENTIAL]
     rotation = np.divide(turned, r, out=np.zeros_like(turned), where=r > 0)
-    return Twist(found.model.mesh, material, rotation, found.solved.twice_energy / NMM_PER_NM)
+    return Twist(finest.model.mesh, material, rotation, finest.solved.twice_energy / NMM_PER_NM)
 
 
 class _TwistRefinement:
@@ -62,16 +62,16 @@ class _TwistRefinement:
         on = model.on(self._driven)
         fixed = [Fixed(on, TANGENTIAL, model.space.places[on, 0]), *model.held("mount")]
         solved = model.solve(TWIST, fixed, np.zeros(3 * model.space.count))
-        found = recovered(model, TWIST, solved.values)
-        self.model, self.solved, self._found = model, solved, found
+        recovery = recovered(model, TWIST, solved.values)
+        self.model, self.solved, self._recovery = model, solved, recovery
 
     @property
     def error(self) -> float:
-        return float(self._found.error.sum() / self._found.energy.sum())
+        return float(self._recovery.error.sum() / self._recovery.energy.sum())
 
     @property
     def met(self) -> bool:
         return self.error < self._relative_error
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, LOBE_BULK))
+        return refined(mesh, bulk(self._recovery.error, LOBE_BULK))

@@ -19,24 +19,25 @@ def point_contact(along: float, across: float, material: Elastic) -> float:
     `along`, `across`: sums of both bodies' curvatures in the two principal planes [1/mm], convex positive;
     both are above 0.
     """
-    total, apart = along + across, abs(along - across) / (along + across)
-    ratio = _ellipticity(apart)
+    total, curvature_difference = along + across, abs(along - across) / (along + across)
+    ratio = _ellipticity(curvature_difference)
     m = 1 - ratio**-2
     shape = 2 * ellipk(m) / pi * (pi / (2 * ratio**2 * ellipe(m))) ** (1 / 3)
     soft = 2 / material.plane_strain_MPa
     return float(shape * (3 * soft / (2 * total)) ** (2 / 3) * total / 2)
 
 
-def _ellipticity(apart: float) -> float:
+def _ellipticity(curvature_difference: float) -> float:
     """a/b of the contact ellipse from the difference of curvatures over their sum."""
     from scipy.optimize import brentq  # a tenth of what `flexspline.pipeline.analysis` imports
 
     def excess(k: float) -> float:
         m = 1 - k**-2
-        return ((k * k + 1) * ellipe(m) - 2 * ellipk(m)) / ((k * k - 1) * ellipe(m)) - apart
+        of_k = ((k * k + 1) * ellipe(m) - 2 * ellipk(m)) / ((k * k - 1) * ellipe(m))
+        return float(of_k - curvature_difference)
 
-    # a circle: the formula is 0/0 there, and the shape factor differs from 1 by apart²
-    if apart < 1e-6:
+    # a circle: the formula is 0/0 there, and the shape factor differs from 1 by this difference squared
+    if curvature_difference < 1e-6:
         return 1.0
     # from less than that a/b to one that no ball on a race has
     return float(brentq(excess, 1 + 1e-7, 1e4))

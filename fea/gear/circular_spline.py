@@ -45,6 +45,6 @@ def condensed_spline(
     ]
     bolted = Fixed(model.on("outside"), TANGENTIAL)
     still = Fixed(model.on("outside")[:1], AXIAL)  # else it could drift along the axis
-    found = condensed(model, ports, last, held=[bolted], loose=[still])
+    spline = condensed(model, ports, last, held=[bolted], loose=[still])
     places = np.arange(len(face))
-    return at_pitch_point(model, pitch_radius, found, places, len(face) + places)
+    return at_pitch_point(model, pitch_radius, spline, places, len(face) + places)

@@ -89,7 +89,7 @@ def condensed(
     loads = np.zeros((3 * model.space.count, len(ports)))
     for column, port in enumerate(ports):
         loads[port.component :: 3, column] = port.weights
-    found = []
+    matrices = []
     for n in range(0, last + 1, 2):
         waves = [Harmonic(n)] if n else [Harmonic(0), Harmonic(0, torsion=True)]
         matrix = np.zeros((len(ports), len(ports)))
@@ -103,14 +103,14 @@ def condensed(
             moved = responses(model, wave, wave.around * pushes, fixed)
             block = pushes.T @ moved
             matrix[np.ix_(mine, mine)] = (block + block.T) / 2
-        found.append(matrix)
-    return Condensed(tangential, np.stack(found))
+        matrices.append(matrix)
+    return Condensed(tangential, np.stack(matrices))
 
 
 def even(model: HarmonicModel, patch: str, component: int) -> Port:
     """An even traction on a straight patch; its displacement is the patch's mean."""
-    own = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
-    return Port(component, own / own.sum())
+    forces = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
+    return Port(component, forces / forces.sum())
 
 
 def along(model: HarmonicModel, patch: str, at: np.ndarray, component: int = RADIAL) -> list[Port]:
@@ -131,9 +131,9 @@ def shares_along(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray
 
 def _hats(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray:
     """(m, count) area [mm²] under each hat by P2 number; together they are the patch."""
-    own = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
+    forces = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
     z = model.space.places[:, 1]
-    hats = np.array([own * np.interp(z, at, one) for one in np.eye(len(at))])
+    hats = np.array([forces * np.interp(z, at, one) for one in np.eye(len(at))])
     if not (hats.sum(axis=1) > 0).all():
         raise ValueError(f"{patch} has too few nodes for {len(at)} places")
     return hats

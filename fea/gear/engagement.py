@@ -59,10 +59,12 @@ class Engagement:
     @cached_property
     def contacts(self) -> Contacts:
         """Of flanks, front, then back, then seat and balls."""
-        own, mean = self.model.contacts, self.evenly
-        few = len(mean) - len(own.free) + self.model.flanks.stop
-        hertz = np.concatenate([np.zeros(few), own.hertz[self.model.flanks.stop :]])
-        return Contacts(mean @ own.free, mean @ own.compliance @ mean.T, mean @ own.turning, hertz)
+        single, mean = self.model.contacts, self.evenly
+        few = len(mean) - len(single.free) + self.model.flanks.stop
+        hertz = np.concatenate([np.zeros(few), single.hertz[self.model.flanks.stop :]])
+        return Contacts(
+            mean @ single.free, mean @ single.compliance @ mean.T, mean @ single.turning, hertz
+        )
 
     @cached_property
     def lift(self) -> np.ndarray:
@@ -130,17 +132,17 @@ class Engagement:
         high = low
         for _ in range(MOST_DOUBLINGS):
             high = 2 * low
-            found = self.held(high, holds)
-            if found is None:
+            state = self.held(high, holds)
+            if state is None:
                 break
-            low, holds = high, found
+            low, holds = high, state
         else:
             return None
         while high > (1 + TORQUE_SHARE) * low:
             middle = sqrt(low * high)
-            found = self.held(middle, holds)
-            if found:
-                low, holds = middle, found
+            state = self.held(middle, holds)
+            if state:
+                low, holds = middle, state
             else:
                 high = middle
         return sqrt(low * high)

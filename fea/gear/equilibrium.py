@@ -105,12 +105,12 @@ def _among_contacts(
         force, turning, hertz = forces[i], at.turning[i], at.hertz[i]
         ball = hertz > 0
         matrix = at.compliance[np.ix_(i, i)]
-        off = -(at.free[i] + rotation * turning + matrix @ force + hertz * force ** (2 / 3))
+        residual = -(at.free[i] + rotation * turning + matrix @ force + hertz * force ** (2 / 3))
         matrix[ball, ball] += 2 / 3 * hertz[ball] * force[ball] ** (-1 / 3)
         factor, fault = dpotrf(matrix.T, lower=1, clean=0)
         if fault:
             return None
-        by, aside = dpotrs(factor, np.array([off, turning]).T, lower=1)[0].T
+        by, aside = dpotrs(factor, np.array([residual, turning]).T, lower=1)[0].T
         weight = float(turning @ aside)
         if not weight > 0:  # none of these can carry a torque
             return None
@@ -126,9 +126,9 @@ def _among_contacts(
                 np.abs(left).max() < GEAR_RESIDUAL * size
                 and lack < GEAR_RESIDUAL * arm * force.max()
             ):
-                found = np.zeros(len(at.free))
-                found[i] = force
-                return found, rotation
+                all_forces = np.zeros(len(at.free))
+                all_forces[i] = force
+                return all_forces, rotation
         forces = np.zeros(len(at.free))
         forces[i] = np.maximum(force, 0)
         ball = enter & (at.hertz > 0)
@@ -148,10 +148,10 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
     for _ in range(MOST_ROUNDS):
         spring = at.hertz * force ** (2 / 3)
         fits = at.free + rotation * turning + matrix @ force + spring
-        off, lack = gap - fits, torque + float(turning @ force)
+        residual, lack = gap - fits, torque + float(turning @ force)
         both = force * gap
         if (
-            np.abs(off).max() < GEAR_RESIDUAL * size
+            np.abs(residual).max() < GEAR_RESIDUAL * size
             and abs(lack) < GEAR_RESIDUAL * arm * force.max()
             and both.max() < GEAR_RESIDUAL * size * force.max()
         ):
@@ -167,7 +167,7 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
             raise EquilibriumError(
                 f"the contact forces did not settle: row {fault} of their compliance is not positive"
             )
-        plain, aside = dpotrs(factor, np.array([off - gap, turning]).T, lower=1)[0].T
+        plain, aside = dpotrs(factor, np.array([residual - gap, turning]).T, lower=1)[0].T
         weight = float(turning @ aside)
 
         def towards(by: np.ndarray, product: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -181,7 +181,7 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
 
         push, lift, _ = towards(plain, -both)
         product = corrected(force, gap, push, lift)
-        push, lift, turn = towards(dpotrs(factor, product / force + off, lower=1)[0], product)
+        push, lift, turn = towards(dpotrs(factor, product / force + residual, lower=1)[0], product)
         reach = GEAR_STEP_SHARE * room(force, push, gap, lift)
         force, gap, rotation = force + reach * push, gap + reach * lift, rotation + reach * turn
     raise EquilibriumError(
@@ -199,6 +199,6 @@ def _tangent(at: Contacts, forces: np.ndarray) -> tuple[float, np.ndarray]:
     if not weight > 0:  # nothing that carries can turn
         return np.inf, np.zeros_like(forces)
     slope = 1 / weight  # S dF + c dθ = 0 and c·dF = −dT
-    found = np.zeros_like(forces)
-    found[on] = -aside * slope
-    return slope, found
+    forces_slope = np.zeros_like(forces)
+    forces_slope[on] = -aside * slope
+    return slope, forces_slope

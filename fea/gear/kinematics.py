@@ -102,12 +102,12 @@ class ToothMesh:
         grid = np.linspace(0, self.reach, GAP_STEPS)
         front, back = self.free_gaps(grid, self.stroke)
         if self.flanks == "drawn":
-            off = [self.drawn_gap(grid) - front, self.drawn_gap(-grid) - back]
+            reliefs = [self.drawn_gap(grid) - front, self.drawn_gap(-grid) - back]
         elif self.flanks == "conjugate":
-            off = [front[0] - front, np.zeros_like(back)]
+            reliefs = [front[0] - front, np.zeros_like(back)]
         else:
-            off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
-        ahead, behind = (np.interp(np.abs(phi), grid, each) for each in off)
+            reliefs = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
+        ahead, behind = (np.interp(np.abs(phi), grid, removed) for removed in reliefs)
         # the mirror of a front flank is the back flank on the other side
         return np.where(phi >= 0, ahead, behind), np.where(phi >= 0, behind, ahead)
 

@@ -110,12 +110,12 @@ class GearModel:
         By the energy of a small further load: dT dθ = Σ dF·C dF over flexspline, teeth and bearing.
         """
         change = at.forces_slope / 2  # each half takes half the torque
-        found = {part: 2 * float(change @ C @ change) for part, C in self.shares.items()}
+        parts = {part: 2 * float(change @ C @ change) for part, C in self.shares.items()}
         ball, force = change[self.balls], at.forces[self.balls]
         on = at.loaded[self.balls]
         yields = 2 / 3 * self.wave_generator.hertz * force[on] ** (-1 / 3)
-        found["bearing"] += 2 * float(ball[on] ** 2 @ yields)
-        return found
+        parts["bearing"] += 2 * float(ball[on] ** 2 @ yields)
+        return parts
 
     def with_gaps(self, mesh: ToothMesh, wave_generator: Plug) -> GearModel:
         """The same bodies with another clearance, play or stroke: how they yield is not found again."""
@@ -138,8 +138,8 @@ class GearModel:
 
     def flank_forces(self, at: Equilibrium) -> np.ndarray:
         """Of one tooth's front and back flank at each of `tooth_angles` (2, t) [N]."""
-        each = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
-        return np.asarray(each / self.teeth_per_station)
+        forces = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
+        return np.asarray(forces / self.teeth_per_station)
 
     def pair_forces(self, at: Equilibrium) -> np.ndarray:
         """Of a pair of teeth at each of `tooth_angles` (t,) [N]: front flank less back flank."""
@@ -157,21 +157,21 @@ class GearModel:
     def _of_rim(self) -> np.ndarray:
         flanks, moved = self.flanks.stop, self.rim_compliance
         half = np.concatenate([self.at_flanks(moved[:flanks]), moved[flanks:]]).T
-        found = np.zeros((self.balls.stop, self.balls.stop))
+        compliance = np.zeros((self.balls.stop, self.balls.stop))
         seat = len(moved)
-        found[:seat, :seat] = np.concatenate([self.at_flanks(half[:flanks]), half[flanks:]])
-        return found
+        compliance[:seat, :seat] = np.concatenate([self.at_flanks(half[:flanks]), half[flanks:]])
+        return compliance
 
     def _of_teeth(self) -> np.ndarray:
         k, flanks = self.balls.stop, self.flanks.stop
-        found = np.zeros((k, k))
+        compliance = np.zeros((k, k))
         i = np.arange(flanks)
         face = np.tile(self.rim.face, 2 * len(self.tooth_angles))
-        found[i, i] = self.pair / self.teeth_per_station / face
+        compliance[i, i] = self.pair / self.teeth_per_station / face
         if self.spline:
             half = self.at_flanks(self.spline.compliance(*self.pitch_points)).T
-            found[:flanks, :flanks] += self.at_flanks(half)
-        return found
+            compliance[:flanks, :flanks] += self.at_flanks(half)
+        return compliance
 
     def at_flanks(self, moved: np.ndarray) -> np.ndarray:
         """Gaps (k, j) of the flanks where `pitch_points` move by (k, j); the spline's count the other way."""
@@ -191,8 +191,8 @@ class GearModel:
         port = np.concatenate([np.tile(np.arange(m), a), np.full(len(at), m)])
         angle = np.concatenate([np.repeat(self.seat_angles, m), at])
         sign = np.concatenate([-np.ones(a * m), np.ones(len(at))])
-        found = np.zeros((self.balls.stop, self.balls.stop))
-        found[self.seat.start :, self.seat.start :] = (
+        compliance = np.zeros((self.balls.stop, self.balls.stop))
+        compliance[self.seat.start :, self.seat.start :] = (
             sign[:, None] * sign * race.compliance(port, angle)
         )
-        return found
+        return compliance

@@ -64,8 +64,8 @@ def tooth(
         + 2 * (1 - nu - 2 * nu**2) / (1 - nu**2) * slender
         + SHIFT * (1 + tan(pressure_angle) ** 2 / (SHEAR_SHARE * (1 + nu)))
     )
-    own = clamped(lever, thickness, pressure_angle, tip, material)
-    return (own + cos(pressure_angle) ** 2 * root / plane) / width
+    clamped_tooth = clamped(lever, thickness, pressure_angle, tip, material)
+    return (clamped_tooth + cos(pressure_angle) ** 2 * root / plane) / width
 
 
 @lru_cache

@@ -58,16 +58,16 @@ class NodeFrames:
         return cls(axes, np.where(on_axis, 0.0, radius))
 
     def to_cartesian(self, u: np.ndarray) -> np.ndarray:
-        """(n, 3) cylindrical to (n, 3) Cartesian components."""
+        """Return vectors (n, 3) in Cartesian components, from cylindrical ones."""
         return np.einsum("nab,nb->na", self.axes, u)
 
     def to_cylindrical(self, u: np.ndarray) -> np.ndarray:
-        """(n, 3) Cartesian to (n, 3) cylindrical components."""
+        """Return vectors (n, 3) in cylindrical components, from Cartesian ones."""
         return np.einsum("nab,na->nb", self.axes, u)
 
 
 def stiffness_matrix(space: SolidSpace, material: Elastic, frames: NodeFrames) -> csr_matrix:
-    """Symmetric matrix (3n, 3n) N/mm; unknown 3·node + component."""
+    """Return the symmetric matrix (3n, 3n) N/mm; unknown 3·node + component."""
     n = len(space.node)
     pairs, d = _derivatives(space)
     row, column = pairs // n, pairs % n

@@ -33,25 +33,25 @@ class Simplices:
     parents: np.ndarray | None = None
 
     def edges(self) -> np.ndarray:
-        """(e, 2), each once, the lesser node first."""
+        """Each edge once (e, 2), the lesser node first."""
         return distinct_edges(self.tets[:, PAIRS], self.nodes)
 
 
 def halved(
-    mesh: Simplices, edges: np.ndarray, lengths: np.ndarray, asked: np.ndarray
+    mesh: Simplices, edges: np.ndarray, lengths: np.ndarray, marked: np.ndarray
 ) -> tuple[Simplices, np.ndarray]:
-    """The mesh with those of its edges (e, 2) halved that are `asked` (e,); `lengths` (e,) rank them.
+    """Halve those edges (e, 2) of the mesh that are `marked` (e,); `lengths` (e,) rank them.
 
     Also returns the halved edges (j, 2). Their new middle nodes are numbered from `mesh.nodes` on, in this
     order.
     """
-    if not np.any(asked):
+    if not np.any(marked):
         return replace(mesh, parents=np.arange(len(mesh.tets))), edges[:0]
     n = mesh.nodes
     key = edge_numbers(edges, n)
     rising = np.argsort(key)
     edges, lengths, key = edges[rising], lengths[rising], key[rising]
-    halve = np.asarray(asked)[rising]
+    halve = np.asarray(marked)[rising]
     order = np.lexsort((np.arange(len(key)), lengths))
     rank = np.empty(len(key), np.int64)
     rank[order] = np.arange(len(key))
@@ -70,8 +70,8 @@ def halved(
 
     tets, whose = _cut(mesh.tets, PAIRS, marked_rank)
     facets, parent = _cut(mesh.facets, SIDES, marked_rank)
-    found = Simplices(n + len(cut), tets, facets, mesh.facet_surface[parent], whose)
-    return found, edges[cut]
+    finer = Simplices(n + len(cut), tets, facets, mesh.facet_surface[parent], whose)
+    return finer, edges[cut]
 
 
 def _cut(
@@ -81,18 +81,18 @@ def _cut(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Simplices halved at their highest marked edges until none is left, and whose parts they are."""
     done, owners = [], []
-    own = np.arange(len(simplices))
+    owner = np.arange(len(simplices))
     while len(simplices):
         rank, between = marked_rank(simplices[:, pairs])
         whole = (rank < 0).all(axis=1)
         done.append(simplices[whole])
-        owners.append(own[whole])
-        simplices, own = simplices[~whole], own[~whole]
+        owners.append(owner[whole])
+        simplices, owner = simplices[~whole], owner[~whole]
         best = rank[~whole].argmax(axis=1)
         rows = np.arange(len(simplices))
         node = between[~whole][rows, best]
         one, other = simplices.copy(), simplices.copy()
         one[rows, pairs[best, 1]] = node
         other[rows, pairs[best, 0]] = node
-        simplices, own = np.vstack([one, other]), np.concatenate([own, own])
+        simplices, owner = np.vstack([one, other]), np.concatenate([owner, owner])
     return np.vstack(done), np.concatenate(owners)

@@ -12,7 +12,7 @@ from flexspline.fea.types import TetMesh
 
 @dataclass(frozen=True)
 class BisectableMesh(TetMesh):
-    """Swept about the axis, or in layers along it.
+    """A mesh that is swept about the axis, or in layers along it.
 
     Attributes
     ----------
@@ -25,11 +25,11 @@ class BisectableMesh(TetMesh):
 
     @property
     def corners(self) -> np.ndarray:
-        """(n, 3) mm."""
+        """Places of the corners (n, 3) mm."""
         return self.nodes[: int(self.cells[:, :4].max()) + 1]
 
     @property
     def simplices(self) -> Simplices:
-        """Of the corners."""
+        """The straight tetrahedra and facets on the corners."""
         tets, facets = self.cells[:, :4], self.facets[:, :3]
         return Simplices(len(self.corners), tets, facets, self.facet_surface)

@@ -25,7 +25,7 @@ class _Form(ctypes.Structure):
 
 
 class BlockProduct:
-    """`matrix @ x`, x (3n,) of the matrix's precision."""
+    """Computes `matrix @ x`; x (3n,) has the matrix's precision."""
 
     def __init__(self, matrix: bsr_matrix) -> None:
         self._matrix = matrix

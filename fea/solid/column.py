@@ -13,7 +13,7 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
-from flexspline.geometry.outline import Meridian, SAME_mm, Segment
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment, distinct
 from flexspline.geometry.part import Part
 
 INTERFACE = "interface"
@@ -63,7 +63,7 @@ class HoledColumn:
         return COLUMN_CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
 
     def plan(self, sector_rad: float, arc_rad: float = LARGEST_ARC) -> Meridian:
-        """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
+        """Return the outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
 
         No arc about the axis is longer than `arc_rad`.
 
@@ -77,7 +77,7 @@ class HoledColumn:
         hole, origin = (rc, 0.0), (0.0, 0.0)
         outside = self.interface == self.outer
         inside = INTERFACE if not outside else CORE_RIM if self.core else None
-        found = [
+        segments = [
             Segment(inner[-1], (rc - rh, 0.0)),
             Segment((rc - rh, 0.0), (rc, rh), hole, HOLE),
             Segment((rc, rh), (rc + rh, 0.0), hole, HOLE),
@@ -86,10 +86,10 @@ class HoledColumn:
             Segment(outer[-1], inner[0]),
             *(Segment(a, b, origin, inside) for a, b in pairwise(inner)),
         ]
-        return Meridian(tuple(found))
+        return Meridian(tuple(segments))
 
     def rest(self, outline: Meridian) -> Meridian:
-        """The outline beyond the interface, closed by segments named INTERFACE."""
+        """Return the outline beyond the interface, closed by segments named INTERFACE."""
         outside = self.interface == self.outer
 
         def beyond(r: float) -> bool:
@@ -122,15 +122,12 @@ class HoledColumn:
         """
         wall = self.inner if self.interface == self.outer else self.outer
         inside = [s.start[1] for s in outline.segments if abs(s.start[0] - wall) < SAME_mm]
-        found = [self.low]
-        for z in sorted([*inside, self.depth, self.high]):
-            if found[-1] + SAME_mm < z <= self.high:
-                found.append(z)
-        return found
+        levels = self.low, *inside, self.depth, self.high
+        return distinct(z for z in levels if self.low <= z <= self.high)
 
 
 def column_of(part: Part) -> HoledColumn | None:
-    """The column around the bolt circle; None where the meridian is no plain rectangle there.
+    """Return the column around the bolt circle; None where the meridian is no plain rectangle there.
 
     That is where a step or an arc of it lies over the holes, where it has steps to both sides of them,
     or where their land is too narrow.
@@ -166,5 +163,5 @@ def column_of(part: Part) -> HoledColumn | None:
 
 def _radii(outline: Meridian) -> np.ndarray:
     """Radii of the outline's vertices, and along its arcs."""
-    found = [s.at(np.linspace(0, 1, 2 if s.centre is None else 9))[:, 0] for s in outline.segments]
-    return np.concatenate(found)
+    radii = [s.at(np.linspace(0, 1, 2 if s.centre is None else 9))[:, 0] for s in outline.segments]
+    return np.concatenate(radii)

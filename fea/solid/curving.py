@@ -56,9 +56,9 @@ def quadratic(
         n = len(points)
         bent = np.zeros(len(edges), bool)
         bent[np.unique(cells[ratio < JACOBIAN_RATIO, 4:]) - n] = True
-        off = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
+        bend = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
         length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-        bent &= off > BENT_SHARE * length
+        bent &= bend > BENT_SHARE * length
         if not left or not 0 < bent.sum() < before:
             break
         before = bent.sum()

@@ -33,19 +33,17 @@ HALF_DEG = 180.0
 
 
 def repeats_of(mesh: TetMesh) -> int:
-    """Number of repeats n of the part whose half repeat this mesh is; 1 for a mesh of a half or of the whole
-    part."""
+    """Return the number of repeats n of the part of which the mesh is half a repeat; 1 for a half or all."""
     return max(1, round(HALF_DEG / mesh.sector_deg))
 
 
 def larger_deg(mesh: TetMesh) -> float:
-    """Angle [deg] of the sector that represents the part under two lobes: a quarter if n is even, else
-    half."""
+    """Return the sector [deg] that stands for the part under two lobes: a quarter if n is even, else half."""
     return max(mesh.sector_deg, HALF_DEG if repeats_of(mesh) % 2 else HALF_DEG / 2)
 
 
 def half_repeat(mesh: TetMesh) -> TetMesh:
-    """The mesh; its part's half where n is odd and the part has an axis.
+    """Return the mesh, or that of the part's half where n is odd and the part has an axis.
 
     On half a repeat a wave of order 1 moves the axis sideways, which would couple its two fields there.
     """
@@ -98,9 +96,9 @@ class WaveSupports:
             self.set(axis, component)
 
     def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
-        """`value` [mm] is the wave's, complex where the wave is."""
-        own = self._turned(np.broadcast_to(value, nodes.shape), nodes)
-        for part, values in zip(self._parts, (own.real, own.imag), strict=False):
+        """Prescribe `value` [mm] of the wave; it is complex where the wave is."""
+        turned = self._turned(np.broadcast_to(value, nodes.shape), nodes)
+        for part, values in zip(self._parts, (turned.real, turned.imag), strict=False):
             part.set(nodes, component, values)
 
     def hold(self, patch: str) -> None:
@@ -119,12 +117,12 @@ class WaveSupports:
     @property
     def _phase(self) -> np.ndarray:
         """D (n,)."""
-        found = np.ones(len(self._model.mesh.nodes), complex)
-        found[self._model.on(SYMMETRY_END)] = np.exp(1j * self._wave.phase)
-        return found
+        phases = np.ones(len(self._model.mesh.nodes), complex)
+        phases[self._model.on(SYMMETRY_END)] = np.exp(1j * self._wave.phase)
+        return phases
 
     def solve(self, load: np.ndarray) -> SolvedWave:
-        """`load` (n, 3) N, the wave's share of the nodal forces on half a repeat.
+        """Solve under `load` (n, 3) N, the wave's share of the nodal forces on half a repeat.
 
         Raises
         ------
@@ -151,14 +149,14 @@ class WaveSupports:
         places = _places(len(phase), corners)
         forces, value = np.zeros((2, matrix.shape[0]))
         mask = np.zeros(matrix.shape[0], bool)
-        own = self._turned(load, every).ravel()
-        for place, part, force in zip(places, self._parts, (own.real, own.imag), strict=True):
+        turned = self._turned(load, every).ravel()
+        for place, part, force in zip(places, self._parts, (turned.real, turned.imag), strict=True):
             forces[place], mask[place], value[place] = force, part.mask.ravel(), part.value.ravel()
         fixed = np.flatnonzero(mask)
 
         def interpolation() -> csr_matrix:
-            own = corner_interpolation(model.mesh, model.frames)
-            return _real_form(own, phase, phase[:corners], corners)
+            of_corners = corner_interpolation(model.mesh, model.frames)
+            return _real_form(of_corners, phase, phase[:corners], corners)
 
         solution = solve(
             matrix, Case(forces, value[fixed]), fixed, interpolation, model.solve_by,
@@ -170,9 +168,11 @@ class WaveSupports:
 
 def _places(unknowns: int, first: int) -> np.ndarray:
     """Numbers (2, unknowns) of two fields' unknowns in one vector: the `first` of each come first."""
-    own = np.arange(unknowns, dtype=np.int32)
-    later = own >= first
-    return np.stack([own + later * first, own + np.where(later, unknowns, first)], dtype=np.int32)
+    number = np.arange(unknowns, dtype=np.int32)
+    later = number >= first
+    return np.stack(
+        [number + later * first, number + np.where(later, unknowns, first)], dtype=np.int32
+    )
 
 
 def _real_form(matrix: csr_matrix, rows: np.ndarray, columns: np.ndarray, first: int) -> csr_matrix:

@@ -23,7 +23,7 @@ PER_LINE = 12
 def torsion_deck(
     mesh: TetMesh, material: Elastic, driven: str, K_Nm_per_rad: float, title: str
 ) -> str:
-    """Deck text: `mount` held, `driven` turned rigidly about z by DECK_ANGLE_RAD.
+    """Return a deck in which `mount` is held and `driven` turned rigidly about z by DECK_ANGLE_RAD.
 
     `K_Nm_per_rad` is our own figure on this mesh, whole part, quoted in the header for comparison.
     Units of the deck: mm, N, MPa.

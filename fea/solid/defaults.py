@@ -45,7 +45,7 @@ it. On a shaft of 16 mm with a bore of 6 mm the volume is right to 1e-4 up to th
 
 
 def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
-    """The first, coarse mesh; `edge_length_mm`, the design's `solver.edge_length_mm`, fixes its largest edge.
+    """Return the specification of the first, coarse mesh; `edge_length_mm` fixes its largest edge.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def _bends(part: Part) -> bool:
 def surface_to_mesh(
     part: Part, first: MeshSpec, sector_deg: float, edge_spacing: float
 ) -> TaggedSurface:
-    """The part's sector as its `first_spec` and meshes refined from it need it: chords, and cuts' reach.
+    """Return the part's sector with the chords and cuts that `first_spec` and finer meshes need.
 
     Points along its edges are `edge_spacing` [mm] apart.
 

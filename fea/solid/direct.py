@@ -33,7 +33,7 @@ FACTORED_STEPS = 30
 
 @contextmanager
 def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
-    """K⁻¹ as a function of the right-hand side (N,), for as long as the context lasts.
+    """Give K⁻¹ as a function of the right-hand side (N,), for as long as the context lasts.
 
     `single`: in single precision, where MKL is and that finds K positive definite.
 
@@ -88,11 +88,11 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
         def allowed(more: np.ndarray, before: np.ndarray = before) -> float:
             return FACTORED_ENERGY * abs(dot(before + more, right))
 
-        off = right - matrix @ before
-        found = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
-        if found.early:
+        residual = right - matrix @ before
+        correction = conjugate_gradients(matrix.__matmul__, back, residual, FACTORED_STEPS, allowed)
+        if correction.early:
             raise SolveError(f"{FACTORED_STEPS} steps were not enough")
-        x = before + found.x
+        x = before + correction.x
     return x
 
 

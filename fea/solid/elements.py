@@ -11,14 +11,14 @@ CHUNK_CELLS = 1_000
 
 
 def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
-    """scikit-fem's MeshTet; corners (n, 3), tets (m, 4)."""
+    """Return scikit-fem's MeshTet of corners (n, 3) and tets (m, 4)."""
     from flexspline.fea.own_assembly import Tetrahedra
 
     return Tetrahedra(np.ascontiguousarray(corners.T), np.ascontiguousarray(tets.T), sort_t=False)
 
 
 def quadratic_mesh(nodes: np.ndarray, cells: np.ndarray) -> Any:
-    """scikit-fem's curved MeshTet2; it numbers the middle nodes by its own edges."""
+    """Return scikit-fem's curved MeshTet2; it numbers the middle nodes by its own edges."""
     from flexspline.fea.own_assembly import CurvedTetrahedra
 
     return CurvedTetrahedra(
@@ -31,7 +31,7 @@ def basis_of(
     elements: np.ndarray | None = None,
     quadrature: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Any:
-    """scikit-fem's basis on all or some elements of a `quadratic_mesh`.
+    """Return scikit-fem's basis on all or some elements of a `quadratic_mesh`.
 
     `quadrature` is points (q, 3) and weights (q,); degree 4 when absent, exact for P2 on straight edges.
     The nodes have scikit-fem's numbers; an element's ten are in the order of `TetMesh.cells`.
@@ -40,7 +40,7 @@ def basis_of(
 
     from flexspline.fea.own_assembly import KeptMapping
 
-    points, weights = quadrature or tet_rule(4)
+    points, weights = quadrature or tet_rule()
     element = ElementTetP2()
     return Basis(
         curved, element, mapping=KeptMapping(curved, element, ElementTriP2()),
@@ -50,41 +50,41 @@ def basis_of(
 
 
 def displacement_gradient(basis: Any, u_cells: np.ndarray) -> np.ndarray:
-    """∂u_a/∂x_b (m, q, a, b) at the basis's points, from the elements' ten displacements (m, 10, 3)."""
+    """Return ∂u_a/∂x_b (m, q, a, b) at the basis's points from ten displacements (m, 10, 3)."""
     slopes = np.stack([function.grad.transpose(1, 2, 0) for (function,) in basis.basis], axis=2)
     return np.matmul(u_cells.transpose(0, 2, 1)[:, None], slopes)
 
 
 def determinants(nodes: np.ndarray, cells: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """det ∂x/∂ξ (m, q) mm³ of ten-node cells at reference points (q, 3); negative where one is folded."""
+    """Return det ∂x/∂ξ (m, q) mm³ at reference points (q, 3); it is negative where a cell is folded."""
     from skfem import ElementTetP2
     from skfem.helpers import det
 
     element = ElementTetP2()
     slopes = np.stack([element.lbasis(points.T, i)[1] for i in range(10)], axis=2)
-    found = np.empty((len(cells), len(points)))
+    dets = np.empty((len(cells), len(points)))
     for start in range(0, len(cells), CHUNK_CELLS):
         part = slice(start, start + CHUNK_CELLS)
         places = nodes[cells[part]].transpose(2, 1, 0)
         jacobian = np.matmul(slopes.reshape(-1, 10), places)  # of each coordinate
-        found[part] = det(jacobian.reshape(3, 3, len(points), -1)).T
-    return found
+        dets[part] = det(jacobian.reshape(3, 3, len(points), -1)).T
+    return dets
 
 
 def reference_values(points: np.ndarray) -> np.ndarray:
-    """φ_i at reference points: (q, 10)."""
+    """Return φ_i (q, 10) at reference points."""
     from skfem import ElementTetP2
 
     element = ElementTetP2()
     return np.stack([element.lbasis(points.T, i)[0] for i in range(10)], axis=1)
 
 
-def tet_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Quadrature points (q, 3) and weights (q,) on the reference tetrahedron."""
+def tet_rule() -> tuple[np.ndarray, np.ndarray]:
+    """Return quadrature points (q, 3) and weights (q,) of degree 4 on the reference tetrahedron."""
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTet
 
-    points, weights = get_quadrature(RefTet, degree)
+    points, weights = get_quadrature(RefTet, 4)
     return points.T, weights
 
 
@@ -98,9 +98,9 @@ NODES = np.array(
 
 
 def jacobian_ratio(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Smallest over largest det J at the nodes and quadrature points, per element (m,).
+    """Return the smallest over the largest det J at nodes and quadrature points of each element (m,).
 
     1 for straight edges, 0 or less where curving has folded the element.
     """
-    found = determinants(nodes, cells, np.vstack([NODES, tet_rule(4)[0]]))
-    return found.min(axis=1) / np.abs(found).max(axis=1)
+    dets = determinants(nodes, cells, np.vstack([NODES, tet_rule()[0]]))
+    return dets.min(axis=1) / np.abs(dets).max(axis=1)

@@ -11,7 +11,7 @@ from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface
 
 
 def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surface]) -> np.ndarray:
-    """Index (k,) of the surface that each face's corners lie on exactly; of several, its centre decides.
+    """Return the surface (k,) on which each face's corners lie exactly; of several, its centre decides.
 
     Of two that coincide, the planes of a half part, it is the first, as in `geometry.tagged`.
 
@@ -24,9 +24,9 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
     MeshQualityError : a face lies on none.
     """
     centres = corners[faces].mean(axis=1)
-    off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
+    distance = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
     away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
-    lies = off[:, faces].max(axis=2) < ON_SURFACE_MM
+    lies = distance[:, faces].max(axis=2) < ON_SURFACE_MM
     if not lies.any(axis=0).all():
         raise MeshQualityError(
             f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
@@ -38,6 +38,6 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
 def patches_of(
     facet_surface: np.ndarray, surfaces: Sequence[Surface]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Number (k,) of each facet's patch in a list of names, and the names, "" first: no patch."""
+    """Return the number (k,) of each facet's patch, and the patches' names; "" comes first: no patch."""
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     return np.array([names.index(s.patch) for s in surfaces])[facet_surface], names

@@ -50,7 +50,7 @@ holes, fell by four times as much. They are believed from the usual on."""
 
 
 def by_correction(cuts: str, error: str) -> str:
-    """How K is found if only the change by holes or a keyway is solved on meshes."""
+    """Describe how K is found if only the change by holes or a keyway is solved on meshes."""
     return (
         f"the part without {cuts} on its meridian, and the effect of the {cuts} by solid meshes"
         f" (Bueckner's superposition); of that effect, {error}"
@@ -61,7 +61,7 @@ Result = TypeVar("Result", bound=MeshResult, covariant=True)
 
 
 class FieldSolver(Protocol[Result]):
-    """Of a load case.
+    """Solves a load case on a mesh.
 
     Attributes
     ----------
@@ -72,13 +72,13 @@ class FieldSolver(Protocol[Result]):
     scales: ErrorScales
 
     def solve(self, model: Model) -> Result:
-        """On one mesh; raises SolidError, MemoryError."""
+        """Solve on one mesh; raises SolidError, MemoryError."""
 
     def method(self, error: str) -> str:
         """Describes how K is found; `error` describes its estimated error."""
 
 
 def error_of(correction: SolvedCorrection, material: Elastic) -> tuple[np.ndarray, float]:
-    """Estimated, of a(v_h, v_h): of each element (m,), and of the whole part [N·mm]."""
+    """Return the estimated error of a(v_h, v_h) of each element (m,), and of the whole part [N·mm]."""
     error = energy_error(correction.mesh, correction.displacement, material).error
     return error, float(error.sum() * 360 / correction.mesh.sector_deg)

@@ -38,19 +38,19 @@ class Fillet:
         return low, high
 
     def height(self, r: np.ndarray) -> np.ndarray:
-        """z of the arc [mm] at radii from `r` to `far`."""
+        """Return z of the arc [mm] at radii from `r` to `far`."""
         across = np.clip(self.far - r, 0.0, self.radius)
         return self.z + self.up * (self.radius - np.sqrt(self.radius**2 - across**2))
 
 
 def fillets_of(shape: Shaft) -> list[Fillet]:
-    """Those of a shaft, from the flange on."""
+    """Return the fillets of a shaft, from the flange on."""
     if shape.fillet_mm <= SAME_mm:
         return []
-    found, z = [], 0.0
+    fillets, z = [], 0.0
     for below, above in pairwise(shape.segment):
         z += below.length_mm
         a, b = below.outer_diameter_mm / 2, above.outer_diameter_mm / 2
         if abs(a - b) > SAME_mm:
-            found.append(Fillet(min(a, b), z, shape.fillet_mm, 1 if b < a else -1))
-    return found
+            fillets.append(Fillet(min(a, b), z, shape.fillet_mm, 1 if b < a else -1))
+    return fillets

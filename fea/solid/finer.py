@@ -47,7 +47,7 @@ HALVING_ROUNDS = 40
 def finer_by_error(
     part: Part, mesh: BisectableMesh, error: np.ndarray, wanted: float
 ) -> BisectableMesh:
-    """The mesh with so many elements as are `wanted`, shorter edges where its elements' errors (m,) are.
+    """Return a mesh with `wanted` elements, with shorter edges where the elements' errors (m,) are large.
 
     Raises
     ------
@@ -84,9 +84,9 @@ def _halved_by_error(
         seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
         edges, lengths, of_element = _lengths(points, mesh, seams)
         mine = of_element[largest]
-        asked = np.zeros(len(edges), bool)
-        asked[mine[lengths[mine] > CUT * lengths[mine].max(axis=1, keepdims=True)]] = True
-        finer, cut_edges = halved(mesh, edges, lengths, asked)
+        marked = np.zeros(len(edges), bool)
+        marked[mine[lengths[mine] > CUT * lengths[mine].max(axis=1, keepdims=True)]] = True
+        finer, cut_edges = halved(mesh, edges, lengths, marked)
         points = with_middles_of(points, finer, cut_edges, surfaces)
         error = _promised(points, finer, surfaces, error, largest)
         mesh = finer

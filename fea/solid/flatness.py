@@ -20,7 +20,7 @@ def mostly_flat(mesh: TetMesh) -> bool:
 
 
 def aspects(mesh: TetMesh) -> np.ndarray:
-    """Longest edge over thickness (m,) of the elements' straight tetrahedra; a regular one has 1.22."""
+    """Return longest edge over thickness (m,) of the straight tetrahedra; a regular one has 1.22."""
     tets = mesh.cells[:, :4]
     corner = mesh.nodes[tets]
     sides = [(corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]) for a, b, c in CORNER_FACES]
@@ -29,7 +29,7 @@ def aspects(mesh: TetMesh) -> np.ndarray:
 
 
 def longest_edges(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """(t,) mm of straight tetrahedra (t, 4)."""
+    """Return the longest edges (t,) mm of straight tetrahedra (t, 4)."""
     corner = points[tets]
     sides = [corner - np.roll(corner, k, axis=1) for k in (1, 2)]
     return np.linalg.norm(sides, axis=3).max(axis=(0, 2))

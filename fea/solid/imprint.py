@@ -41,11 +41,11 @@ class PatchEdge:
     tangent: np.ndarray
 
     def beyond(self, points: np.ndarray) -> np.ndarray:
-        """How far (n,) [mm] points (n, 3) are beyond it, along the meridian."""
+        """Return how far (n,) [mm] points (n, 3) are beyond the circle, along the meridian."""
         return (_meridional(points) - self.rz) @ self.tangent
 
     def reached(self, points: np.ndarray) -> np.ndarray:
-        """The points (n, 3) moved along the meridian until they are neither beyond nor before it."""
+        """Return the points (n, 3) moved along the meridian onto the circle."""
         rz = _meridional(points)
         moved = rz - self.beyond(points)[:, None] * self.tangent
         scale = moved[:, 0] / np.maximum(rz[:, 0], ABOVE_ZERO)
@@ -53,7 +53,7 @@ class PatchEdge:
 
 
 def smooth_patch_edges(surfaces: Sequence[Surface]) -> Iterator[PatchEdge]:
-    """Those between the swept surfaces of a part."""
+    """Return the smooth patch edges between the swept surfaces of a part."""
     swept = [(i, s.segment) for i, s in enumerate(surfaces) if isinstance(s, Swept)]
     for i, a in swept:
         for j, b in swept:
@@ -77,7 +77,7 @@ class MesherMesh:
 def with_patch_edges(
     mesh: MesherMesh, surfaces: Sequence[Surface], space: MeshingMap
 ) -> MesherMesh:
-    """The mesh in which no face crosses a patch edge, and each is on its side's surface."""
+    """Return the mesh in which no face crosses a patch edge, and each is on its side's surface."""
     for edge in smooth_patch_edges(surfaces):
         mesh = _with(mesh, edge, surfaces, space)
     return mesh

@@ -28,7 +28,7 @@ class Iterated:
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> float:
-    """a·b by one thread. BLAS would start its own threads, whose waiting slows oneMKL's products."""
+    """Return a·b, by one thread. BLAS would start its own threads, whose waiting slows oneMKL's products."""
     return float(np.einsum("i,i", a, b))
 
 
@@ -40,7 +40,7 @@ def conjugate_gradients(
     allowed: Callable[[np.ndarray], float] = lambda x: 0.0,
     worth: float = inf,
 ) -> Iterated:
-    """At most `most` steps for K x = f from x = 0, until the error's energy is below `allowed` at that x.
+    """Take at most `most` steps for K x = f from x = 0, until the error's energy is below `allowed`.
 
     It ends early if the rate of its later half predicts more than `worth` further steps.
 
@@ -108,5 +108,5 @@ def _spectrum(lengths: list[float], turns: list[float]) -> tuple[float, float]:
     a, b = np.array(lengths), np.array(turns)
     diagonal = 1 / a
     diagonal[1:] += b[:-1] / a[:-1]
-    seen = eigh_tridiagonal(diagonal, np.sqrt(np.abs(b[:-1])) / a[:-1], eigvals_only=True)
-    return float(seen[0]), float(seen[-1])
+    eigenvalues = eigh_tridiagonal(diagonal, np.sqrt(np.abs(b[:-1])) / a[:-1], eigvals_only=True)
+    return float(eigenvalues[0]), float(eigenvalues[-1])

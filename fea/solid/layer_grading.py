@@ -27,7 +27,7 @@ WHOLE_STEP = 1.01
 def graded(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], grading: Grading, most: float
 ) -> tuple[np.ndarray, Simplices]:
-    """Edges halved until none is longer than the grading asks; new nodes of the boundary on its surfaces."""
+    """Halve edges until none is longer than the grading asks; new boundary nodes are on its surfaces."""
     for _ in range(GRADING_ROUNDS):
         edges = mesh.edges()
         seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
@@ -48,7 +48,7 @@ def graded(
 def with_middles_of(
     points: np.ndarray, mesh: Simplices, cut_edges: np.ndarray, surfaces: Sequence[Surface]
 ) -> np.ndarray:
-    """Points with those between edges' ends: at half the angle, or on the surfaces of the boundary.
+    """Add points between the ends of edges: at half the angle, or on the surfaces of the boundary.
 
     Straight middles are kept where another place would flatten a tetrahedron; the next round tries again.
     """
@@ -72,12 +72,12 @@ def _relative_lengths(
     dr, dz = (ends[:, 1, k] - ends[:, 0, k] for k in (0, 2))
     off_axis = (ends[:, :, 0] > 0).all(axis=1)
     turn = np.where(off_axis, ends[:, 1, 1] - ends[:, 0, 1], 0.0)
-    there = cartesian(middle)
+    places = cartesian(middle)
     across = np.minimum(
         grading.far,
-        grading.near + grading.growth * distance_from(seams.nodes[seams.singular], points, there),
+        grading.near + grading.growth * distance_from(seams.nodes[seams.singular], points, places),
     )
     others = seams.nodes[seams.singular & ~seams.revolved]
-    plain = grading.near + grading.growth * distance_from(others, points, there)
+    plain = grading.near + grading.growth * distance_from(others, points, places)
     around = np.maximum(across, np.minimum(plain, WHOLE_STEP * RING_STEP * middle[:, 0]))
     return np.sqrt((dr**2 + dz**2) / across**2 + (middle[:, 0] * turn / around) ** 2)

@@ -32,7 +32,7 @@ other then keep 0.4 of their distance."""
 def coarsest(
     layers: Layers, surfaces: Sequence[Surface], grading: Grading, most: float = inf
 ) -> tuple[np.ndarray, Simplices]:
-    """Corners (n, 3) [mm] and tetrahedra of the layers' prisms, as few as the lines allow.
+    """Return corners (n, 3) [mm] and tetrahedra of the layers' prisms, as few as the lines allow.
 
     Raises
     ------

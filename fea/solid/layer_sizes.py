@@ -15,7 +15,7 @@ GAUSS_POINTS = 64
 
 
 def open_angle(layers: Layers, r: np.ndarray, z: float) -> np.ndarray:
-    """Angle [rad] of the sector that no hole or slot takes from circles of radii `r` (n,) [mm] at z."""
+    """Return the angle [rad] that no hole or slot takes from circles of radii `r` (n,) [mm] at z."""
     part, sector = layers.part, layers.sector
     taken: list[tuple[np.ndarray, np.ndarray]] = []
     if part.bolts is not None and z < part.hole_depth:
@@ -62,14 +62,14 @@ def _radii(layers: Layers, low: float, high: float) -> Iterator[tuple[np.ndarray
 
 
 def face_area(layers: Layers, bore: float, outer: float, z: float) -> float:
-    """Of the cross-section between two radii at height z [mm²]."""
+    """Return the area of the cross-section between two radii at height z [mm²]."""
     return sum(
         float((w * r * open_angle(layers, r, z)).sum()) for r, w in _radii(layers, bore, outer)
     )
 
 
 def volume(layers: Layers) -> float:
-    """Of the sector [mm³]."""
+    """Return the volume of the sector [mm³]."""
     total = 0.0
     for low, high, bore, outer in layers.tubes:
         for a, b in _heights(layers, low, high):
@@ -83,7 +83,7 @@ def volume(layers: Layers) -> float:
 
 
 def wall_area(layers: Layers, r: float, low: float, high: float) -> float:
-    """Of a cylinder about the axis between two heights [mm²]."""
+    """Return the area of a cylinder about the axis between two heights [mm²]."""
     at = np.array([r])
     return sum(
         r * (b - a) * float(open_angle(layers, at, (a + b) / 2)[0])

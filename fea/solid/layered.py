@@ -31,7 +31,7 @@ from flexspline.geometry.surfaces import part_surfaces
 def layered_mesh(
     part: Part, sector_deg: float, spec: MeshSpec, most_elements: float = inf
 ) -> BisectableMesh:
-    """Mesh of a shaft's sector, graded as `spec` says.
+    """Return the mesh of a shaft's sector, graded as `spec` says.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def _sizes(layers: Layers) -> dict[str, float]:
 
 
 def layered_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
-    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges, as `TaggedSurface.sharp_edges`.
+    """Return points (k, 3) every `spacing` mm along the sharp edges and patch edges of a shaft in layers.
 
     Raises
     ------
@@ -88,13 +88,13 @@ def layered_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
     ends, on = points[seams.nodes[seams.sharp]], seams.surfaces[seams.sharp]
     counts = np.maximum(2, np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / spacing) + 1)
-    found = []
+    lines = []
     for count in np.unique(counts):
         along = np.linspace(0, 1, int(count))[None, :, None]
         a, b = (polar(ends[counts == count, k])[:, None] for k in (0, 1))
-        found.append(cartesian((a + along * (b - a)).reshape(-1, 3)))
+        lines.append(cartesian((a + along * (b - a)).reshape(-1, 3)))
     pairs = np.vstack([np.repeat(on[counts == c], int(c), axis=0) for c in np.unique(counts)])
-    every = np.vstack(found)
+    every = np.vstack(lines)
     for both in np.unique(pairs, axis=0):
         mine = (pairs == both).all(axis=1)
         every[mine] = common_point(every[mine], [surfaces[i] for i in both])[0]

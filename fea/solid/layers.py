@@ -15,7 +15,7 @@ import numpy as np
 from flexspline.fea.solid.fillets import Fillet, fillets_of
 from flexspline.fea.solid.plan import PlanMesh, triangulated
 from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
-from flexspline.geometry.outline import SAME_mm
+from flexspline.geometry.outline import SAME_mm, distinct
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 
@@ -42,7 +42,7 @@ class Layers:
 
     @classmethod
     def of(cls, part: Part, sector_rad: float) -> Layers:
-        """Of a shaft."""
+        """Find the layers of a shaft's sector."""
         assert isinstance(part.shape, Shaft)
         tubes, z = [], 0.0
         for i, s in enumerate(part.shape.segment):
@@ -53,10 +53,10 @@ class Layers:
 
     @property
     def radii(self) -> list[float]:
-        """Of all rings [mm], rising; the first is the bore's, or the core's."""
-        found = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
-        found |= {r for f in self.fillets for r in (f.middle, f.far)}
-        rising = _distinct(found)
+        """Radii of all rings [mm], rising; the first is the bore's, or the core's."""
+        all_radii = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
+        all_radii |= {r for f in self.fillets for r in (f.middle, f.far)}
+        rising = distinct(all_radii)
         if rising[0] > 0:
             return rising
         least = rising[1]
@@ -72,40 +72,40 @@ class Layers:
         return any(bore == 0 for *_, bore, _ in self.tubes)
 
     def levels(self, far: float) -> list[float]:
-        """z [mm] of all cross-sections' ends, and between them no farther apart than `far` asks."""
+        """Return z [mm] of all cross-sections' ends, and levels between them as close as `far` asks."""
         grip = self.part.shape.grip_length_mm if isinstance(self.part.shape, Shaft) else 0.0
         ends = {0.0, self.part.hole_depth, self.part.length - grip, *(t[1] for t in self.tubes)}
         ends |= {z for f in self.fillets for z in f.span}
         if self.part.keyway is not None:
             ends.add(self.part.keyway.start)
-        found = [0.0]
+        levels = [0.0]
         whole = {f.span for f in self.fillets}
-        for a, b in pairwise(_distinct(ends)):
+        for a, b in pairwise(distinct(ends)):
             arc = any(low < b - SAME_mm and a + SAME_mm < high for low, high in whole)
             count = 1 if arc else ceil(LAYERS_PER_FAR * (b - a) / far)
-            found += [a + (b - a) * k / count for k in range(1, count)] + [b]
-        return found
+            levels += [a + (b - a) * k / count for k in range(1, count)] + [b]
+        return levels
 
     def curves(self) -> list[Curve]:
-        """The plan's lines."""
+        """Lines of the plan."""
         radii, sector = self.radii, self.sector
         ends = [(radii[0], radii[-1], a) for a in (0.0, sector)]
-        found: list[Curve] = [
+        curves: list[Curve] = [
             Line((a * np.cos(t), a * np.sin(t)), (b * np.cos(t), b * np.sin(t))) for a, b, t in ends
         ]
-        found += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
+        curves += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
         if self.part.bolts is not None:
-            found += hole_arcs(self.part.bolts, sector)
+            curves += hole_arcs(self.part.bolts, sector)
         slot = self.part.keyway
         if slot is not None:
             outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME_mm)
             half, floor = slot.half_width, slot.floor
-            found.append(Line((floor, 0.0), (floor, half)))
-            found.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
-        return found
+            curves.append(Line((floor, 0.0), (floor, half)))
+            curves.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
+        return curves
 
     def plan(self, smallest_mm: float) -> PlanMesh:
-        """Its triangles; with a fan about the axis where material reaches it.
+        """Return the plan's triangles, with a fan about the axis where material reaches it.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Layers:
         return PlanMesh(np.vstack([made.points, (0.0, 0.0)]), np.vstack([made.triangles, fan]))
 
     def within(self, plan: PlanMesh, low: float, high: float) -> np.ndarray:
-        """Mask (m,) of the plan's triangles that the layer from `low` to `high` [mm] is made of.
+        """Return the mask (m,) of the plan's triangles in the layer from `low` to `high` [mm].
 
         Corners' mean coordinates decide: a triangle of a line's chord and a point beyond lies beyond.
         """
@@ -134,18 +134,18 @@ class Layers:
                 outer = f.far
         x = corner[:, :, 0] * np.cos(corner[:, :, 1])
         y = corner[:, :, 0] * np.sin(corner[:, :, 1])
-        there = (r > bore) & (r < outer)
+        inside = (r > bore) & (r < outer)
         bolts, slot = self.part.bolts, self.part.keyway
         if bolts is not None and z < self.part.hole_depth:
             for a, b in bolts.centres:
                 away = np.hypot(x - a, y - b).mean(axis=1)
-                there &= away > bolts.hole_radius + SAME_mm
+                inside &= away > bolts.hole_radius + SAME_mm
         if slot is not None and z > slot.start:
-            there &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
-        return there
+            inside &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
+        return inside
 
     def prisms(self, smallest_mm: float, far: float) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.
+        """Return nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.
 
         Raises
         ------
@@ -155,7 +155,7 @@ class Layers:
         n, k = len(plan.points), len(z)
         number = np.arange(n * k).reshape(n, k)
         nodes = [np.column_stack([np.repeat(plan.points, k, axis=0), np.tile(z, n)])]
-        found, count = [], n * k
+        prisms, count = [], n * k
         for j in range(k - 1):
             kept = plan.triangles[self.within(plan, z[j], z[j + 1])]
             low, high = number[:, j].copy(), number[:, j + 1].copy()
@@ -170,13 +170,5 @@ class Layers:
                     r = plan.points[on, 0]
                     nodes.append(np.column_stack([plan.points[on], f.height(r)]))
                     count += len(on)
-            found.append(np.hstack([low[kept], high[kept]]))
-        return np.vstack(nodes), np.vstack(found)
-
-
-def _distinct(values: set[float]) -> list[float]:
-    found: list[float] = []
-    for v in sorted(values):
-        if not found or v > found[-1] + SAME_mm:
-            found.append(v)
-    return found
+            prisms.append(np.hstack([low[kept], high[kept]]))
+        return np.vstack(nodes), np.vstack(prisms)

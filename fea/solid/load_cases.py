@@ -43,7 +43,7 @@ TORQUE_OF_TRACTION = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
 
 
 def torsion(model: Model, driven: str) -> SolvedStiffness:
-    """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
+    """Hold `mount` and turn every point of `driven` rigidly about z by 1 rad; K comes from both routes.
 
     Raises
     ------
@@ -56,23 +56,23 @@ def torsion(model: Model, driven: str) -> SolvedStiffness:
 def torsion_and_correction(
     model: Model, driven: str, whole: WholeTurned
 ) -> tuple[SolvedStiffness, SolvedCorrection]:
-    """`torsion`, and the change that the cuts make in the body without them, by the same factors.
+    """Return `torsion`, and the change by the cuts in the body without them, by the same factors.
 
     Raises
     ------
     SolveError : as `torsion`. MeshingError, MeshQualityError : as `turned_walls` and `Walls.of`.
     """
     walls, before = _walls_of(model, whole)
-    own = model.frames.to_cylindrical(walls.forces).ravel()
-    turned, corrected = _turned(model, driven).solve_also_at_rest(np.zeros_like(own), own)
+    forces = model.frames.to_cylindrical(walls.forces).ravel()
+    turned, corrected = _turned(model, driven).solve_also_at_rest(np.zeros_like(forces), forces)
     return _balanced(model, driven, turned), _correction(model, walls, before, corrected)
 
 
 def torsion_correction(model: Model, driven: str, whole: WholeTurned) -> SolvedCorrection:
-    """The change by the cuts alone; errors as of `torsion_and_correction`."""
+    """Return the change by the cuts alone; errors are those of `torsion_and_correction`."""
     walls, before = _walls_of(model, whole)
-    own = model.frames.to_cylindrical(walls.forces).ravel()
-    return _correction(model, walls, before, _turned(model, driven).solve_at_rest(own))
+    forces = model.frames.to_cylindrical(walls.forces).ravel()
+    return _correction(model, walls, before, _turned(model, driven).solve_at_rest(forces))
 
 
 def _walls_of(model: Model, whole: WholeTurned) -> tuple[TurnedWalls, TurnedWalls]:
@@ -130,18 +130,18 @@ def _balanced(model: Model, driven: str, solution: Solution) -> SolvedStiffness:
 
 
 def lobes(model: Model, supported: bool) -> SolvedStiffness:
-    """Torque entering at the two lobes; `supported`: the seat may not move radially.
+    """Let the torque enter at the two lobes; `supported`: the seat may not move radially.
 
     The model is half a repeat of the part, as `cyclic.half_repeat`. The field is that of its quarter or half
     for a torque of 1 N·m on the whole part; K = T²/(2·strain energy).
     """
     loads, torque = _lobe_loads(model)
-    found = []
+    solved_waves = []
     for wave, load in loads.items():
         supports = _under_lobes(model, wave, supported)
-        found.append(supports.solve(load * (LOBE_TORQUE_NMM / torque)))
-    stored, work = sum(w.stored for w in found), sum(w.work for w in found)
-    solved = _of_waves(model, found, "antisymmetric")
+        solved_waves.append(supports.solve(load * (LOBE_TORQUE_NMM / torque)))
+    stored, work = sum(w.stored for w in solved_waves), sum(w.work for w in solved_waves)
+    solved = _of_waves(model, solved_waves, "antisymmetric")
     return SolvedStiffness(
         **vars(solved), K_energy=stiffness_of_work(stored), K_check=stiffness_of_work(work)
     )
@@ -150,7 +150,7 @@ def lobes(model: Model, supported: bool) -> SolvedStiffness:
 def lobe_correction(
     model: Model, supported: bool, whole: WholeUnderLobes, least: float = 0.0
 ) -> SolvedCorrection:
-    """What the holes change under the lobes' whole torque; model and mesh as of `lobes`.
+    """Return the change by the holes under the lobes' whole torque; model and mesh are those of `lobes`.
 
     Waves are not solved if their v together stores less than `least` [N·mm]. The most that they may store,
     LEFT_OUT times their E, is added to the doubt.
@@ -159,7 +159,7 @@ def lobe_correction(
     ------
     SolveError. MeshingError, MeshQualityError : as `lobed_walls` and `Walls.of`.
     """
-    repeats, found, lost, moved, left_out = repeats_of(model.mesh), [], 0.0, 0.0, 0.0
+    repeats, solved_waves, lost, moved, left_out = repeats_of(model.mesh), [], 0.0, 0.0, 0.0
     on = Walls.of(model.mesh, whole.part)
     both = (
         lobed_walls(on, repeats, solved, model.material) for solved in (whole.solved, whole.coarser)
@@ -172,13 +172,13 @@ def lobe_correction(
         left_out += LEFT_OUT * walls.energy
     for walls, before in pairs:
         supports = _under_lobes(model, walls.wave, supported)
-        found.append(supports.solve(model.frames.to_cylindrical(walls.forces)))
-        lost += walls.energy + found[-1].stored
-        v = model.frames.to_cartesian(found[-1].values)
+        solved_waves.append(supports.solve(model.frames.to_cylindrical(walls.forces)))
+        lost += walls.energy + solved_waves[-1].stored
+        v = model.frames.to_cartesian(solved_waves[-1].values)
         work = float(np.sum((walls.forces - before.forces).conjugate() * v).real)
         moved += walls.energy - before.energy + 2 * work * walls.wave.times * model.copies
-    solved = _of_waves(model, found, "antisymmetric")
-    by_work = lost + sum(w.work - w.stored for w in found)
+    solved = _of_waves(model, solved_waves, "antisymmetric")
+    by_work = lost + sum(w.work - w.stored for w in solved_waves)
     return SolvedCorrection(
         solved.mesh, solved.displacement, lost, by_work, abs(moved) + left_out,
         solved.dofs, solved.residual,
@@ -215,7 +215,7 @@ def _lobe_traction(phi: np.ndarray) -> np.ndarray:
 
 
 def ellipse(model: Model, w0_mm: float) -> Solved:
-    """`mount` held, `seat` given the radial displacement w0·cos 2φ, its other components free.
+    """Hold `mount` and give `seat` the radial displacement w0·cos 2φ; its other components are free.
 
     The model is half a repeat, the field the quarter's or half's, as of `lobes`.
     """
@@ -225,18 +225,19 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
     supports = WaveSupports(model, wave, antisymmetric=False)
     supports.set(nodes, RADIAL, wave.of(lambda angle: w0_mm * np.cos(2 * angle), phi))
     supports.hold("mount")
-    found = supports.solve(np.zeros((len(model.mesh.nodes), 3)))
-    return _of_waves(model, [found], "symmetric")
+    solved_wave = supports.solve(np.zeros((len(model.mesh.nodes), 3)))
+    return _of_waves(model, [solved_wave], "symmetric")
 
 
-def _of_waves(model: Model, found: list[SolvedWave], parity: Parity) -> Solved:
+def _of_waves(model: Model, solved_waves: list[SolvedWave], parity: Parity) -> Solved:
     """Waves of half a repeat, unfolded to a quarter of the part, or to a half if n is odd."""
     whole = unfolding(model.mesh, larger_deg(model.mesh))
     u = np.zeros((whole.copies, len(model.mesh.nodes), 3))
     for copy, values in enumerate(u):
-        for w in found:
+        for w in solved_waves:
             values += model.frames.to_cartesian(w.wave.on_copy(w.values, copy))
     return Solved(
         whole.mesh, whole.vectors(u, parity),
-        max(w.residual for w in found), sum(w.free_count for w in found), found[0].solver,
+        max(w.residual for w in solved_waves), sum(w.free_count for w in solved_waves),
+        solved_waves[0].solver,
     )  # fmt: skip

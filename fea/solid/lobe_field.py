@@ -28,21 +28,21 @@ one of five waves is then solved, in 1.7 s of the processor instead of 6.3 s."""
 
 
 class LobeSolver(FieldSolver[MeshResult], Protocol):
-    """Under the load; `supported`: the seat may not move radially."""
+    """Solves the lobe load; `supported`: the seat may not move radially."""
 
     supported: bool
 
 
 @dataclass
 class FullLobes:
-    """All of the field."""
+    """Solves the whole field under the lobe load."""
 
     material: Elastic
     supported: bool
     scales: ErrorScales = FULL_SCALES
 
     def solve(self, model: Model) -> MeshResult:
-        """On a mesh of half a repeat; the level is that of the quarter or half."""
+        """Solve on a mesh of half a repeat; the level is that of the quarter or half."""
         solved = lobes(model, self.supported)
         error = energy_error(solved.mesh, solved.displacement, self.material)
         return MeshResult(solved.level, error.relative)
@@ -54,7 +54,7 @@ class FullLobes:
 
 @dataclass
 class LobeCorrection:
-    """What the bolt holes change of it (`fea.solid.superposition`).
+    """Solves only the change by the bolt holes (`fea.solid.superposition`).
 
     `tolerance` : of K, relative. `wholes` : the part without its holes under the load, solved better and
     better, one for each mesh, at least one.
@@ -68,17 +68,17 @@ class LobeCorrection:
     _whole: WholeUnderLobes | None = None
 
     def solve(self, model: Model) -> MeshResult:
-        """As `FullLobes.solve`; raises MeshingError, MeshQualityError as `lobe_correction` besides."""
+        """Solve on a mesh of half a repeat; raises MeshingError and MeshQualityError as `lobe_correction`."""
         self._whole = whole = next(self.wholes, self._whole)
         assert whole is not None
         known = whole.stiffness
         work = work_of_stiffness(known.K_Nm_per_rad)
-        found = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
-        _, error = error_of(found, self.material)
-        K, check = (stiffness_of_work(work + lost) for lost in (found.lost, found.lost_by_work))
-        work += found.lost
-        level = found.level(K, check)
-        doubt = known.half_width + found.doubt / work
+        change = lobe_correction(model, self.supported, whole, WAVES_SHARE * self.tolerance * work)
+        _, error = error_of(change, self.material)
+        K, check = (stiffness_of_work(work + lost) for lost in (change.lost, change.lost_by_work))
+        work += change.lost
+        level = change.level(K, check)
+        doubt = known.half_width + change.doubt / work
         return MeshResult(level, error / work, doubt=doubt)
 
     def method(self, error: str) -> str:

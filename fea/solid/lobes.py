@@ -78,15 +78,15 @@ class _FreeRim:
 
     def solve(self, mesh: MeridianMesh) -> None:
         model = HarmonicModel(mesh, self._material)
-        self._found = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
+        self._solution = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
         self.mesh = mesh
 
     @property
     def met(self) -> bool:
-        return self._found.estimate < self._wanted
+        return self._solution.estimate < self._wanted
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, SOLID_BULK))
+        return refined(mesh, bulk(self._solution.error, SOLID_BULK))
 
 
 def lobe_stiffness(
@@ -97,7 +97,7 @@ def lobe_stiffness(
     progress: Callable[[str], None],
     limit_s: float = inf,
 ) -> Stiffness:
-    """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
+    """Return K_b = T²/(2·strain energy) with its bounds; refine until they meet `tolerance`.
 
     The meshes are of half a repeat of the part, the levels those of its quarter or half, as `symmetry` says.
     A given load stores too little energy on a mesh, so K_h is an upper bound here too. The recovery
@@ -112,8 +112,9 @@ def lobe_stiffness(
     mesh, usual = next(meshes)
     estimate = ScaledEstimate(usual, field.scales.believed)
     rest = (mesh for mesh, _ in meshes)
-    found = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
-    shortfall = refine(found, mesh, Deadline(limit_s))
+    lobes = _SolidLobes(rest, field, tolerance, symmetry, progress, estimate)
+    shortfall = refine(lobes, mesh, Deadline(limit_s))
+    estimate = lobes.estimate
     method = field.method(
         "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
         f" {estimate.scale:.2f}"
@@ -135,10 +136,10 @@ class _SolidLobes:
     def solve(self, mesh: TetMesh) -> None:
         with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
             model = Model.of(half_repeat(mesh), self.field.material)
-            found = self.field.solve(model)
-        self.estimate.add(found)
+            result = self.field.solve(model)
+        self.estimate = self.estimate.with_mesh(result)
         self.progress(
-            f"{found.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
+            f"{result.level.elements} elements, {self.symmetry} of the part, K ± {percent(self.half)}"
         )
 
     @property

@@ -52,13 +52,13 @@ ENTRIES_PER_UNKNOWN = 85.0
 
 
 def direct_bytes(unknowns: int, entries: float) -> float:
-    """Memory beyond the assembled matrix to factorise it [bytes]."""
+    """Return the memory that factors need beyond the assembled matrix [bytes]."""
     triangles = 1.0 if pardiso() else LU_FACTORS
     return ENTRY_BYTES * entries + triangles * FACTOR_BYTES * unknowns ** (4 / 3)
 
 
 def iterative_bytes(unknowns: int, entries: float) -> float:
-    """Memory beyond the assembled matrix to iterate, the corners' factors included [bytes]."""
+    """Return the memory of an iteration beyond the assembled matrix, with the corners' factors [bytes]."""
     corners = direct_bytes(round(CORNER_SHARE * unknowns), entries * CORNER_SHARE / 2)
     return ITERATION_ENTRY_BYTES * entries + corners
 
@@ -69,13 +69,13 @@ def check_before_assembly(unknowns: int) -> None:
     matrix = 12 * entries  # bytes: a double and a 32-bit column each
     least = min(direct_bytes(unknowns, entries), iterative_bytes(unknowns, entries))
     need = max(ASSEMBLY_ENTRY_BYTES * entries, matrix + least)
-    there = available_bytes()
-    if need > there:
-        raise MemoryShortError(unknowns, need, there)
+    available = available_bytes()
+    if need > available:
+        raise MemoryShortError(unknowns, need, available)
 
 
 def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False) -> SolverKind:
-    """How to solve.
+    """Return the solver that fits into memory and is expected to be faster.
 
     `corners`: the mesh's interpolation is known, so iteration is possible; `slow`: it would take many steps.
 
@@ -83,30 +83,30 @@ def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False
     ------
     MemoryShortError : no way fits.
     """
-    there = available_bytes()
+    available = available_bytes()
     factors = direct_bytes(unknowns, entries)
     steps = iterative_bytes(unknowns, entries) if corners else inf
     below = DIRECT_BELOW
     if pardiso() and (slow or entries < THIN_ENTRIES * unknowns):
         below = THIN_BELOW
-    if factors <= there and (unknowns <= below or not corners):
+    if factors <= available and (unknowns <= below or not corners):
         return "direct"
-    if steps <= there:
+    if steps <= available:
         return "iterative"
-    if factors <= there:
+    if factors <= available:
         return "direct"
-    raise MemoryShortError(unknowns, min(factors, steps), there)
+    raise MemoryShortError(unknowns, min(factors, steps), available)
 
 
 def steps_of_factors(unknowns: int, entries: int) -> float:
-    """Steps of an iteration that cost as much as factors; inf where those do not fit, or are never used."""
+    """Return how many steps cost as much as factors; inf where those do not fit or are never used."""
     if unknowns > THIN_BELOW or direct_bytes(unknowns, entries) > available_bytes():
         return inf
     return STEPS_PER_ROOT * sqrt(unknowns)
 
 
 def available_bytes() -> float:
-    """Memory that this process may still take: of the machine, its container, its own limit."""
+    """Return the memory that this process may still take: of the machine, its container, its own limit."""
     return min(_machine_free_bytes(), container_free_bytes(), free_address_space_bytes())
 
 
@@ -119,7 +119,7 @@ def _machine_free_bytes() -> float:
 
 
 def container_free_bytes(folder: Path = Path("/sys/fs/cgroup")) -> float:
-    """What the control group allows less what it holds [bytes], inf where there is none.
+    """Return the control group's limit less what it holds [bytes], inf where there is none.
 
     File pages that nobody uses will give way.
     """

@@ -39,7 +39,7 @@ Other edges make another mesh, and the last attempt does without the unrolling."
 
 @dataclass(frozen=True)
 class MeshSpec:
-    """What to ask of the mesher; lengths in mm.
+    """Requirements on a mesh; lengths in mm.
 
     `unrolled_radius` 0 meshes in part space, otherwise see `fea.solid.unroll`. `time_limit_s` is the
     mesher's, for all its attempts.
@@ -52,7 +52,7 @@ class MeshSpec:
     time_limit_s: float = MESHER_SECONDS
 
     def scaled(self, factor: float) -> MeshSpec:
-        """The same for a mesh `factor` times as coarse."""
+        """Return the requirements for a mesh `factor` times as coarse."""
         return replace(
             self,
             grading=self.grading.scaled(factor),
@@ -77,8 +77,8 @@ def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
         radius = spec.unrolled_radius if unrolled else 0.0
         grading = spec.grading.scaled(factor)
         try:
-            asked = replace(spec, grading=grading, unrolled_radius=radius, time_limit_s=left_s)
-            return _mesh_once(surface, asked)
+            complete = replace(spec, grading=grading, unrolled_radius=radius, time_limit_s=left_s)
+            return _mesh_once(surface, complete)
         except MeshQualityError as fault:
             last = fault
     raise last

@@ -51,11 +51,11 @@ def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
     """
     space = SolidSpace.of(mesh)
     for what, right in wanted.items():
-        found = float((space.volumes if what == VOLUME else space.areas(what)).sum())
-        if not abs(found / right - 1) < SIZE_TOLERANCE:
+        actual = float((space.volumes if what == VOLUME else space.areas(what)).sum())
+        if not abs(actual / right - 1) < SIZE_TOLERANCE:
             unit = "mm³" if what == VOLUME else "mm²"
             raise MeshQualityError(
-                f"{_in_words(what)}: {found:.6g} {unit} in the mesh, {right:.6g} in the part:"
+                f"{_in_words(what)}: {actual:.6g} {unit} in the mesh, {right:.6g} in the part:"
                 " a smaller solver.edge_length_mm describes it better"
             )
 

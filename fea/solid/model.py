@@ -42,7 +42,7 @@ class Model:
 
     @classmethod
     def of(cls, mesh: TetMesh, material: Elastic) -> Model:
-        """Assemble. Raises MemoryShortError, before, where that or the solve would not fit."""
+        """Assemble the stiffness matrix; raises MemoryShortError if it or the solve would not fit."""
         check_before_assembly(3 * len(mesh.nodes))
         return cls.in_frames(mesh, material, NodeFrames.cylindrical(mesh.nodes))
 
@@ -53,7 +53,7 @@ class Model:
         return cls(mesh, material, frames, stiffness_matrix(space, material, frames), space)
 
     def on(self, patch: str) -> np.ndarray:
-        """Sorted nodes on a patch, its edges included."""
+        """Return the sorted nodes on a patch, its edges included."""
         return self.space.on(patch)
 
     @property
@@ -96,19 +96,19 @@ class Supports:
             self.set(nodes, component)
 
     def solve(self, load: np.ndarray) -> Solution:
-        """Under nodal forces `load` (N,) [N]; errors as of `solver.solve_each`."""
+        """Solve under nodal forces `load` (N,) [N]; errors as of `solver.solve_each`."""
         (solution,) = self._solve((load,), (1.0,))
         return solution
 
     def solve_also_at_rest(
         self, load: np.ndarray, at_rest: np.ndarray
     ) -> tuple[Solution, Solution]:
-        """`solve`, and under other forces with all that is prescribed 0, by the same factors."""
+        """Solve, and solve under other forces with all that is prescribed 0, by the same factors."""
         turned, rested = self._solve((load, at_rest), (1.0, 0.0))
         return turned, rested
 
     def solve_at_rest(self, load: np.ndarray) -> Solution:
-        """`solve`, with all that is prescribed 0."""
+        """Solve with all that is prescribed 0."""
         (solution,) = self._solve((load,), (0.0,))
         return solution
 

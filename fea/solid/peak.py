@@ -38,7 +38,7 @@ def stress_field(
     load_case: str,
     edges: SharpEdges,
 ) -> SolidField:
-    """von Mises stress of a displacement (n, 3) Cartesian mm, with the peak that counts.
+    """Return the von Mises stress of a displacement (n, 3) Cartesian mm, with the peak that counts.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:
     from_peak = np.linalg.norm(points - points[top], axis=1)
 
     def largest(distance_mm: float, within_mm: float = inf) -> float | None:
-        found = mises[(away >= distance_mm) & (from_peak <= within_mm)]
-        return float(found.max()) if len(found) else None
+        stresses = mises[(away >= distance_mm) & (from_peak <= within_mm)]
+        return float(stresses.max()) if len(stresses) else None
 
     return judged(float(mises[top]), (x, y, z), edges.exclusion_mm, largest)

@@ -51,7 +51,7 @@ class PlanMesh:
 
 
 def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> PlanMesh:
-    """The sector from angle 0 to `sector` [rad], between the least and the largest radius of its lines.
+    """Triangulate the sector from angle 0 to `sector` [rad], between the lines' least and largest radius.
 
     The bounds of the sector are among `curves`. Triangles whose sides are below `smallest_mm` may be poor.
 
@@ -59,26 +59,28 @@ def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> 
     ------
     MeshingError : lines too near each other, or that cross at too small an angle.
     """
-    own = PlanEdges(curves, sector)
+    edges = PlanEdges(curves, sector)
     largest = np.array([c.largest_share for c in curves])
-    while (large := (np.diff(own.share, axis=1)[:, 0] > largest[own.owner] * (1 + TOUCH))).any():
-        own.split(large)
+    while (
+        large := (np.diff(edges.share, axis=1)[:, 0] > largest[edges.owner] * (1 + TOUCH))
+    ).any():
+        edges.split(large)
     for _ in range(PLAN_ROUNDS):
-        if len(own.points) > PLAN_POINTS:
+        if len(edges.points) > PLAN_POINTS:
             break
-        crowded = encroached(own.points, own.ends)
+        crowded = encroached(edges.points, edges.ends)
         if crowded.any():
-            own.split(crowded)
+            edges.split(crowded)
             continue
-        triangles = _delaunay(own.points)
-        added, halve = _flattened(own, triangles)
+        triangles = _delaunay(edges.points)
+        added, halve = _flattened(edges, triangles)
         if not len(added) and not halve.any():
-            added, halve = _improvements(own, triangles, smallest_mm)
+            added, halve = _improvements(edges, triangles, smallest_mm)
         if not len(added) and not halve.any():
-            return _checked(own, triangles)
-        own.points = np.vstack([own.points, added])
-        own.split(halve)
-    raise MeshingError(f"the plan cannot be meshed: still uneven with {len(own.points)} points")
+            return _checked(edges, triangles)
+        edges.points = np.vstack([edges.points, added])
+        edges.split(halve)
+    raise MeshingError(f"the plan cannot be meshed: still uneven with {len(edges.points)} points")
 
 
 def _delaunay(points: np.ndarray) -> np.ndarray:
@@ -89,52 +91,52 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
 
 
 def _improvements(
-    own: PlanEdges, triangles: np.ndarray, smallest_mm: float
+    edges: PlanEdges, triangles: np.ndarray, smallest_mm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
-    sides = edge_lengths(own.points, triangles)
-    radius = circumradii(sides, signed_areas(own.points, triangles))
-    scale = np.exp(own.points[triangles, 0].mean(axis=1))
+    sides = edge_lengths(edges.points, triangles)
+    radius = circumradii(sides, signed_areas(edges.points, triangles))
+    scale = np.exp(edges.points[triangles, 0].mean(axis=1))
     poor = is_poor(sides, radius, SMALLEST_PLAN_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
-    added, halve = improvements(own.points, own.ends, triangles[poor], radius[poor])
-    middle = own.points[own.ends].mean(axis=1)
-    return added, halve & (own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm)
+    added, halve = improvements(edges.points, edges.ends, triangles[poor], radius[poor])
+    middle = edges.points[edges.ends].mean(axis=1)
+    return added, halve & (edges.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm)
 
 
-def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _flattened(edges: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middles (j, 2) of the longest sides of triangles that straight sides flatten, or the edges to halve.
 
     Edges that lie too far off their line for the triangles beside them are halved too.
     """
-    u, phi = own.points.T
-    n = len(own.points)
+    u, phi = edges.points.T
+    n = len(edges.points)
     straight = np.exp(u)[:, None] * np.column_stack([np.cos(phi), np.sin(phi)])
     scale = np.exp(u[triangles].mean(axis=1)) ** 2
-    area = signed_areas(own.points, triangles)
+    area = signed_areas(edges.points, triangles)
     mine = triangles[signed_areas(straight, triangles) < FLATTENED_TRIANGLE * scale * area]
-    longest = edge_lengths(own.points, mine).argmax(axis=1)
+    longest = edge_lengths(edges.points, mine).argmax(axis=1)
     rows = np.arange(len(mine))
     flat = edge_numbers(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
-    lines = edge_numbers(own.ends, n)
+    lines = edge_numbers(edges.ends, n)
     pairs = triangles[:, SIDES]
-    off = own.middles() - own.points[own.ends].mean(axis=1)
+    off = edges.middles() - edges.points[edges.ends].mean(axis=1)
     order = np.argsort(lines)
     at = order[np.minimum(np.searchsorted(lines[order], edge_numbers(pairs, n)), len(lines) - 1)]
-    along = own.points[pairs[..., 1]] - own.points[pairs[..., 0]]
+    along = edges.points[pairs[..., 1]] - edges.points[pairs[..., 0]]
     inwards = along[..., 0] * off[at, 1] - along[..., 1] * off[at, 0]  # over the edge's length
     near = (lines[at] == edge_numbers(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
     free = np.setdiff1d(flat, lines)
-    added = (own.points[free // n] + own.points[free % n]) / 2
+    added = (edges.points[free // n] + edges.points[free % n]) / 2
     return added, np.isin(lines, np.union1d(flat, lines[at[near]]))
 
 
-def _checked(own: PlanEdges, triangles: np.ndarray) -> PlanMesh:
+def _checked(edges: PlanEdges, triangles: np.ndarray) -> PlanMesh:
     """Refuse a plan that lacks an edge of a line, or does not fill its rectangle."""
-    n = len(own.points)
+    n = len(edges.points)
     sides = triangles[:, SIDES]
-    missing = ~np.isin(edge_numbers(own.ends, n), edge_numbers(sides, n))
-    span = np.ptp(own.points, axis=0).prod()
-    covered = signed_areas(own.points, triangles).sum()
+    missing = ~np.isin(edge_numbers(edges.ends, n), edge_numbers(sides, n))
+    span = np.ptp(edges.points, axis=0).prod()
+    covered = signed_areas(edges.points, triangles).sum()
     if missing.any() or not abs(covered / span - 1) < 1e-9:  # rounding of a few thousand areas
         raise MeshingError(f"the plan lacks {int(missing.sum())} edges of its lines")
-    return PlanMesh(np.column_stack([np.exp(own.points[:, 0]), own.points[:, 1]]), triangles)
+    return PlanMesh(np.column_stack([np.exp(edges.points[:, 0]), edges.points[:, 1]]), triangles)

@@ -68,8 +68,8 @@ Curve = Line | Arc
 
 
 def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
-    """Bolt holes in a sector [rad]: half a hole at angle 0 and at its end, whole ones between."""
-    found: list[Curve] = []
+    """Return the bolt holes in a sector [rad]: half a hole at angle 0 and at its end, whole ones between."""
+    arcs: list[Curve] = []
     for x, y in bolts.centres:
         angle = float(np.arctan2(y, x)) % (2 * np.pi)
         if angle > sector + SAME_rad:
@@ -81,12 +81,12 @@ def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
             start, sweep = angle - np.pi, np.pi
         half = sweep / 2  # two arcs: a circle's parameter has one beginning
         for k in (0, 1):
-            found.append(Arc((x, y), bolts.hole_radius, start + k * half, half, HOLE_STEP / half))
-    return found
+            arcs.append(Arc((x, y), bolts.hole_radius, start + k * half, half, HOLE_STEP / half))
+    return arcs
 
 
 def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:
-    """Points (2,) where two lines cross, whether or not within their ranges."""
+    """Return the points (2,) where two lines cross, whether or not within their ranges."""
     if isinstance(a, Line) and isinstance(b, Line):
         p, d = np.array(a.start), np.subtract(a.end, a.start)
         q, e = np.array(b.start), np.subtract(b.end, b.start)
@@ -121,7 +121,7 @@ def _both_sides(
 
 
 def pieces(curves: Sequence[Curve]) -> list[tuple[int, np.ndarray]]:
-    """For each curve its number and parameters, rising from 0 to 1: its ends and where others cross it."""
+    """Return the parameters of each curve, rising from 0 to 1, at its ends and where others cross it."""
     cuts: list[list[float]] = [[0.0, 1.0] for _ in curves]
     for (i, a), (j, b) in combinations(enumerate(curves), 2):
         for point in crossings(a, b):
@@ -129,11 +129,11 @@ def pieces(curves: Sequence[Curve]) -> list[tuple[int, np.ndarray]]:
             if all(-SMALLEST_PIECE < x < 1 + SMALLEST_PIECE for x in (s, t)):
                 cuts[i].append(s)
                 cuts[j].append(t)
-    return [(i, _distinct(found)) for i, found in enumerate(cuts)]
+    return [(i, _distinct(shares)) for i, shares in enumerate(cuts)]
 
 
-def _distinct(found: list[float]) -> np.ndarray:
-    rising = np.sort(np.clip(found, 0.0, 1.0))
+def _distinct(shares: list[float]) -> np.ndarray:
+    rising = np.sort(np.clip(shares, 0.0, 1.0))
     kept = [0.0, *(b for a, b in pairwise(rising) if b - a > SMALLEST_PIECE)]
     kept[-1] = 1.0 if kept[-1] > 1 - SMALLEST_PIECE else kept[-1]
     return np.array(kept)

@@ -26,7 +26,7 @@ MERGED_DISTANCE = 1e-9
 
 
 def mapped(points: np.ndarray, sector: float) -> np.ndarray:
-    """(x, y) to (ln r, φ)."""
+    """Return (ln r, φ) of points (x, y)."""
     r = np.hypot(points[:, 0], points[:, 1])
     phi = np.arctan2(points[:, 1], points[:, 0])
     phi = np.where(phi < sector / 2 - np.pi, phi + 2 * np.pi, phi)
@@ -65,11 +65,11 @@ class PlanEdges:
         return self._at(self.owner, self.share.mean(axis=1))
 
     def _at(self, owner: np.ndarray, share: np.ndarray) -> np.ndarray:
-        found = np.empty((len(share), 2))
+        points = np.empty((len(share), 2))
         for i in np.unique(owner):
             mine = owner == i
-            found[mine] = mapped(self.curves[i].at(share[mine]), self.sector)
-        return found
+            points[mine] = mapped(self.curves[i].at(share[mine]), self.sector)
+        return points
 
     def split(self, mask: np.ndarray, at: np.ndarray | float = 0.5) -> None:
         """Cut edges (mask) at this share of their range."""
@@ -77,9 +77,9 @@ class PlanEdges:
             return
         share, owner, ends = self.share[mask], self.owner[mask], self.ends[mask]
         middle = share[:, 0] + np.broadcast_to(at, mask.shape)[mask] * (share[:, 1] - share[:, 0])
-        there = self._at(owner, middle)
+        points = self._at(owner, middle)
         new = len(self.points) + np.arange(len(middle))
-        self.points = np.vstack([self.points, there])
+        self.points = np.vstack([self.points, points])
         self.ends = np.vstack(
             [
                 self.ends[~mask],
@@ -117,8 +117,8 @@ class PlanEdges:
                 middle = (low + high) / 2
                 s = self.share[mine]
                 t = s[:, 0] + (middle if side == 0 else 1 - middle) * (s[:, 1] - s[:, 0])
-                there = self._at(self.owner[mine], t)
-                near = np.linalg.norm(there - self.points[self.ends[mine, side]], axis=1) < wanted
+                points = self._at(self.owner[mine], t)
+                near = np.linalg.norm(points - self.points[self.ends[mine, side]], axis=1) < wanted
                 low, high = np.where(near, middle, low), np.where(near, high, middle)
             at = np.full(len(self.ends), 0.5)
             at[mine] = high if side == 0 else 1 - high

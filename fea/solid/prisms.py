@@ -32,7 +32,7 @@ prisms and hexahedra into tetrahedra, 1999)."""
 
 
 def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (r, φ, z) vertex by vertex, each at all angles; prisms between neighbouring angles.
+    """Return nodes (r, φ, z) vertex by vertex, each at all angles, and prisms between neighbouring angles.
 
     A triangle that is counter-clockwise in (r, z) is clockwise seen along φ: its order is turned, so
     that every prism, here and in `extruded`, has its second triangle on the positive side of the first.
@@ -52,7 +52,7 @@ def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.nda
 def extruded(
     plan: MeridianMesh, column: HoledColumn, rest: MeridianMesh, seam: np.ndarray, offset: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The column's nodes, numbered from `offset`, and its prisms, which use the interface's nodes."""
+    """Return the column's nodes, numbered from `offset`, and its prisms, which use the interface's nodes."""
     line = along(rest, INTERFACE)
     line = line[np.argsort(rest.points[line, 1])]
     z = rest.points[line, 1]
@@ -93,31 +93,31 @@ def _filled_hole(plan: MeridianMesh, column: HoledColumn) -> tuple[np.ndarray, n
 
 
 def mirrored(angles: np.ndarray, wedge: float, k: int) -> np.ndarray:
-    """Angles [rad] of a wedge in the k-th of its images side by side, each the mirror image of the last."""
+    """Return angles [rad] of a wedge in the k-th of its images, each the mirror image of the last."""
     return k * wedge + (angles if k % 2 == 0 else wedge - angles)
 
 
 def unrolled_copies(
     polar: np.ndarray, prisms: np.ndarray, wedge: float, copies: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A wedge and its mirror images: nodes (r, φ, z) and prisms; what two images share is there once."""
-    nodes, found = [], []
+    """Return nodes (r, φ, z) and prisms of a wedge and its mirror images; shared nodes are there once."""
+    nodes, cells = [], []
     for k in range(copies):
         image = polar.copy()
         image[:, 1] = mirrored(polar[:, 1], wedge, k)
         image[polar[:, 0] < SAME_mm, 1] = 0.0  # on the axis all angles are one
         nodes.append(image)
         turned = [0, 1, 2, 3, 4, 5] if k % 2 == 0 else [0, 2, 1, 3, 5, 4]
-        found.append(prisms[:, turned] + k * len(polar))
+        cells.append(prisms[:, turned] + k * len(polar))
     stacked = np.vstack(nodes)
     _, first, number = np.unique(
         np.round(stacked / SAME_mm), axis=0, return_index=True, return_inverse=True
     )
-    return stacked[first], number.ravel()[np.vstack(found)]
+    return stacked[first], number.ravel()[np.vstack(cells)]
 
 
 def cut(prisms: np.ndarray) -> np.ndarray:
-    """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node.
+    """Cut each prism into three tetrahedra; shared faces are cut alike, from their least node.
 
     They are positive as the prism is. Of a prism with a node twice, on the axis, two are left, or one.
     """
@@ -128,5 +128,5 @@ def cut(prisms: np.ndarray) -> np.ndarray:
 
 
 def along(mesh: MeridianMesh, patch: str) -> np.ndarray:
-    """Vertices on a patch of the outline."""
+    """Return the vertices on a patch of the outline."""
     return np.unique(mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))])

@@ -16,7 +16,7 @@ CORNER_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
-    """Faces (k, 3) that belong to one tetrahedron only, outward."""
+    """Return the faces (k, 3), outward, that belong to one tetrahedron only."""
     faces = tets[:, CORNER_FACES].reshape(-1, 3)
     _, first, count = np.unique(
         np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
@@ -27,15 +27,15 @@ def boundary_faces(tets: np.ndarray) -> np.ndarray:
 def with_middles(
     corners: np.ndarray, tets: np.ndarray, faces: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges (e, 2), ten-node cells and six-node facets; middle node of edge i is len(corners) + i."""
+    """Return edges (e, 2), ten-node cells and six-node facets; edge i has node len(corners) + i."""
     mesh = linear_mesh(corners, tets)
     edges = mesh.edges.T
     n = len(corners)
     cells = np.hstack([tets, mesh.t2e.T + n])
     key = edge_numbers(edges, n)
     order = np.argsort(key)
-    found = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
-    return edges, cells, np.hstack([faces, found + n])
+    of_sides = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
+    return edges, cells, np.hstack([faces, of_sides + n])
 
 
 def straightened(
@@ -57,7 +57,7 @@ def straightened(
 def straightened_inside(
     nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, facets: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes with the edges that are not on the surface straight; and the cells' `jacobian_ratio` (m,)."""
+    """Make the edges inside straight; return the nodes and the cells' `jacobian_ratio` (m,)."""
     inside = np.ones(len(nodes), bool)
     inside[facets.ravel()] = False
     return _straightened(nodes, jacobian_ratio(nodes, cells), cells, edges, inside)
@@ -66,7 +66,7 @@ def straightened_inside(
 def straightened_too(
     nodes: np.ndarray, ratio: np.ndarray, cells: np.ndarray, edges: np.ndarray
 ) -> np.ndarray:
-    """Nodes with the edges of the surface straight too, after `straightened_inside`.
+    """Make the edges of the surface straight too, after `straightened_inside`.
 
     Raises
     ------

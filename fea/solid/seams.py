@@ -41,7 +41,7 @@ class Seams:
 def seams_of(
     points: np.ndarray, facets: np.ndarray, facet_surface: np.ndarray, surfaces: Sequence[Surface]
 ) -> Seams:
-    """Seams of a closed boundary: facets (k, 3), outward, of points (n, 3) [mm], each on a surface (k,)."""
+    """Return a closed boundary's seams: facets (k, 3), outward, of points (n, 3) [mm], on surfaces (k,)."""
     sides = facets[:, SIDES].reshape(-1, 2)
     order = np.argsort(edge_numbers(sides, len(points)), kind="stable")
     one, other = order[0::2], order[1::2]
@@ -90,7 +90,7 @@ def _lies_in(segment: Segment, plane: Plane) -> bool:
 
 
 def distance_from(edges: np.ndarray, points: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Of places `at` (k, 3) from the nearest of edges (e, 2) between points (n, 3) [mm]; without any, inf."""
+    """Return the distance of places `at` (k, 3) from the nearest of edges (e, 2) [mm]; without any, inf."""
     if not len(edges):
         return np.full(len(at), np.inf)
     along = np.linspace(0, 1, ALONG)[None, :, None]

@@ -23,7 +23,7 @@ class Grading:
     growth: float = 0.5
 
     def scaled(self, factor: float) -> Grading:
-        """The same grading for a mesh `factor` times as coarse."""
+        """Return the grading for a mesh `factor` times as coarse."""
         return Grading(self.near * factor, self.far * factor, self.growth)
 
 
@@ -39,7 +39,7 @@ def refuse_beyond(points: float, edge_mm: float) -> None:
 def graded_background(
     edges: np.ndarray, box: tuple[np.ndarray, np.ndarray], grading: Grading
 ) -> Background | None:
-    """The grading as a sizing field on a Delaunay mesh of edge points and a loose grid.
+    """Return the grading as a sizing field on a Delaunay mesh of edge points and a loose grid.
 
     Parameters
     ----------

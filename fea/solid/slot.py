@@ -68,7 +68,7 @@ class SlottedTube:
 
     @property
     def angle(self) -> float:
-        """Of the floor's corner [rad]."""
+        """Angle of the floor's corner [rad]."""
         return atan2(self.slot.half_width, self.slot.floor)
 
     @property
@@ -85,9 +85,9 @@ class SlottedTube:
         """Material between the floor's middle and the bore, or the axis [mm]."""
         return self.slot.floor - self.inner
 
-    def grading(self, asked: Grading) -> Grading:
-        """The same wish of an error, for a revolved mesh of many steps."""
-        return Grading(NEAR_RATIO * asked.near, FAR_RATIO * asked.far, GROWTH_RATIO * asked.growth)
+    def grading(self, plain: Grading) -> Grading:
+        """Return the grading that gives the same error on a revolved mesh of many steps."""
+        return Grading(NEAR_RATIO * plain.near, FAR_RATIO * plain.far, GROWTH_RATIO * plain.growth)
 
     def finer(self, grading: Grading) -> Finer:
         """What the meridian must have beside the grading: shorter edges along `edges`, where the stress
@@ -98,24 +98,24 @@ class SlottedTube:
         return Finer(LARGEST_KEYED_STEP, tuple(map(tuple, places.tolist())), edge_mm=edge)
 
     def outline(self, whole: Meridian) -> Meridian:
-        """The outline with a vertex where each of the block's edges ends."""
+        """Return the outline with a vertex where each of the block's edges ends."""
         ends = [(self.corner, self.end), (self.outer, self.slot.start)]
-        found: list[Segment] = []
+        segments: list[Segment] = []
         for s in whole.segments:
             on = [p for p in ends if _within(s, p)]
             for p in on:
-                found.append(Segment(s.start, p, patch=s.patch))
+                segments.append(Segment(s.start, p, patch=s.patch))
                 s = Segment(p, s.end, patch=s.patch)
-            found.append(s)
-        return Meridian(tuple(found))
+            segments.append(s)
+        return Meridian(tuple(segments))
 
     def step_rad(self, far: float) -> float:
-        """Step about the axis over the slot's half angle, a whole share of it; `far`: `Grading.far` [mm]."""
+        """Return the step about the axis, a whole share of the slot's half angle; `far` as in Grading."""
         steps = ceil(self.angle * self.corner / (STEP_OF_EDGE * far))
         return self.angle / max(LEAST_STEPS, steps)
 
     def angles(self, sector: float, far: float) -> np.ndarray:
-        """Angles from 0 to `sector` [rad]: even over the slot, then by growing steps."""
+        """Return angles from 0 to `sector` [rad]: even over the slot, then by growing steps."""
         first = self.step_rad(far)
         left = sector - self.angle
         steps = [first]
@@ -127,17 +127,17 @@ class SlottedTube:
         )
 
     def side(self, angles: np.ndarray) -> float:
-        """The angle of the mesh [rad] that is moved onto the slot's side: the nearest one except 0."""
+        """Return the angle of the mesh [rad] that is moved onto the slot's side: the nearest one except 0."""
         others = angles[angles > SAME_rad]
         return float(others[np.abs(others - self.angle).argmin()])
 
     def holds(self, polar: np.ndarray, side: float) -> np.ndarray:
-        """Mask (m,) of the places (m, 3) as (r, φ, z) in the unbent mesh that lie within the block."""
+        """Return the mask (m,) of the places (m, 3) as (r, φ, z) of the unbent mesh within the block."""
         r, phi, z = polar.T
         return (r > self.corner) & (phi < side) & (z > self.slot.start)
 
     def bent(self, polar: np.ndarray, side: float, sector: float) -> np.ndarray:
-        """Nodes (n, 3) as (r, φ, z), the block's faces on the slot's walls; `side` is its angle [rad]."""
+        """Return nodes (n, 3) as (r, φ, z) with the block's faces on the slot; `side` is its angle [rad]."""
         r, phi, z = polar.T
         share = np.clip(1 - (self.slot.start - z) / self.fading, 0, 1)
         wall = np.arcsin(np.minimum(1.0, self.slot.half_width / np.maximum(r, self.corner)))
@@ -163,11 +163,11 @@ class SlottedTube:
 
     @property
     def half_volume(self) -> float:
-        """Of the slot's half at angles from 0 on [mm³]."""
+        """Volume of the slot's half at angles from 0 on [mm³]."""
         return self.slot.length * self.slot.section_mm2(self.outer) / 2
 
     def half_mouth(self, outline: Meridian, patch: str) -> float:
-        """What the slot's half takes from a patch's area on the outer wall [mm²]."""
+        """Return the area that the slot's half takes from a patch on the outer wall [mm²]."""
         on_wall = [s for s in outline.segments if s.patch == patch and s.start[0] == s.end[0]]
         lengths = [
             max(s.start[1], s.end[1]) - max(self.slot.start, min(s.start[1], s.end[1]))
@@ -177,28 +177,28 @@ class SlottedTube:
         return self.outer * self.mouth_rad * sum(max(0.0, length) for length in lengths)
 
     def cuts(self, points: np.ndarray) -> np.ndarray:
-        """Mask (n,) of points (n, 3) [mm] inside the slot."""
+        """Return the mask (n,) of points (n, 3) [mm] inside the slot."""
         x, y, z = points.T
         inside = (x > self.slot.floor) & (np.abs(y) < self.slot.half_width - SAME_mm)
         return inside & (z > self.slot.start + SAME_mm)
 
     def rims(self, spacing: float) -> np.ndarray:
-        """Points (k, 3) every `spacing` mm along the slot's edges, for angles from 0 on."""
+        """Return points (k, 3) every `spacing` mm along the slot's edges, for angles from 0 on."""
         floor, half, start = self.slot.floor, self.slot.half_width, self.slot.start
         side = sqrt(self.outer**2 - half**2)
         corners = [(floor, 0.0), (floor, half), (side, half)]
         lines = [((*a, z), (*b, z)) for z in (start, self.end) for a, b in pairwise(corners)]
         lines += [((*a, start), (*a, self.end)) for a in corners[1:]]
-        found = []
+        points = []
         for a, b in lines:
             count = max(2, ceil(dist(a, b) / spacing) + 1)
-            found.append(np.linspace(a, b, count))
+            points.append(np.linspace(a, b, count))
         turn = np.linspace(
             0, self.mouth_rad, max(2, ceil(self.outer * self.mouth_rad / spacing) + 1)
         )
         arc = self.outer * np.column_stack([np.cos(turn), np.sin(turn)])
-        found.append(np.column_stack([arc, np.full(len(arc), start)]))
-        return np.vstack(found)
+        points.append(np.column_stack([arc, np.full(len(arc), start)]))
+        return np.vstack(points)
 
 
 def _within(s: Segment, p: tuple[float, float]) -> bool:

@@ -21,7 +21,7 @@ Judgement."""
 
 
 def block_of(part: Part, low: float) -> SlottedTube | None:
-    """The keyway of a shaft, if the mesh can be bent onto it; what lies below `low` [mm] is not bent.
+    """Return the shaft's keyway, if the mesh can be bent onto it; nothing below `low` [mm] is bent.
 
     None without a keyway, where the slot leaves the last segment, reaches too near its outer wall, or
     begins too near a step.

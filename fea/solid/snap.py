@@ -32,7 +32,7 @@ def snap_to_surfaces(
     surfaces: Sequence[Surface],
     limit: float,
 ) -> np.ndarray:
-    """Nodes of `faces` moved onto their surfaces; a copy of `points` (n, 3) mm.
+    """Move nodes of `faces` onto their surfaces; returns a copy of `points` (n, 3) mm.
 
     A node where several surfaces meet goes to their common point. If that is farther than `limit`
     [mm] (a smooth joint, which the mesher need not follow), it goes to the nearest surface alone,
@@ -53,7 +53,7 @@ def middles_on_surfaces(
     facet_surface: np.ndarray,
     surfaces: Sequence[Surface],
 ) -> np.ndarray:
-    """Nodes (n, 3) mm: `corners` as they are, then `middles` of `edges`, those of `facets` on their surfaces.
+    """Return nodes (n, 3) mm: `corners`, then `middles` of `edges`, those of `facets` on their surfaces.
 
     A middle moves by the longest edge at most.
     """
@@ -72,7 +72,7 @@ def snap_middles(
     surfaces: Sequence[Surface],
     limit: float,
 ) -> np.ndarray:
-    """The middle nodes, the last of `nodes` (n, 3) mm, as `snap_to_surfaces`; a copy.
+    """Move the middle nodes, the last of `nodes` (n, 3) mm, as `snap_to_surfaces`; returns a copy.
 
     Where several surfaces meet, a middle goes to their common point only if both ends of its edge (e, 2) lie
     on all of them. An edge that crosses a smooth joint has an end beside it. Its middle, moved to the joint
@@ -107,7 +107,7 @@ def into_sector_planes(
     surfaces: Sequence[Surface],
     sector_deg: float,
 ) -> np.ndarray:
-    """Nodes of the symmetry planes put into them, whatever else may be undone later.
+    """Put the nodes of the symmetry planes into them, whatever else may be undone later.
 
     Nodes of both planes go onto the axis: put into one plane and then the other they leave the first.
     """
@@ -136,7 +136,7 @@ def _nodes_by_surfaces(
 
 
 def common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
-    """Alternating projections, and whether each point settled on all surfaces."""
+    """Project points onto a group of surfaces in turn; return whether each settled on all of them."""
     moved = points
     for _ in range(PROJECTION_ROUNDS if len(group) > 1 else 1):
         before = moved

@@ -36,7 +36,7 @@ class SolvedStiffness(Solved):
 
     @property
     def level(self) -> MeshLevel:
-        """What this mesh gave."""
+        """The mesh and its K."""
         return _level(self.mesh, self.dofs, self.K_energy, self.K_check, self.residual)
 
 
@@ -61,7 +61,7 @@ class SolvedCorrection:
     residual: float
 
     def level(self, K_Nm_per_rad: float, check_Nm_per_rad: float) -> MeshLevel:
-        """The mesh, with the K that it gives and the same by the work."""
+        """Return the mesh, its K, and K by the work."""
         return _level(self.mesh, self.unknowns, K_Nm_per_rad, check_Nm_per_rad, self.residual)
 
 

@@ -92,7 +92,7 @@ def solve_each(
         worth = inf if by else steps_of_factors(len(free), entries)
         try:
             with two_level(matrix, is_free, corners()) as prepared:
-                found = [_iterated(prepared, system, worth) for system in systems]
+                iterated = [_iterated(prepared, system, worth) for system in systems]
         except IterationError:
             if worth == inf:
                 raise
@@ -100,12 +100,12 @@ def solve_each(
         else:
             return [
                 _checked(matrix, system, u, free, how, error_energy)
-                for system, (u, error_energy) in zip(systems, found, strict=True)
+                for system, (u, error_energy) in zip(systems, iterated, strict=True)
             ]
     right = [system.right[free] for system in systems]
-    each = direct(condense(matrix, D=fixed, expand=False), right)
+    free_values = direct(condense(matrix, D=fixed, expand=False), right)
     solutions = []
-    for system, values in zip(systems, each, strict=True):
+    for system, values in zip(systems, free_values, strict=True):
         u = system.lift.copy()
         u[free] = values
         solutions.append(_checked(matrix, system, u, free, how))
@@ -159,8 +159,8 @@ def _allowed_energy(
 
     u is x and `lift`, the prescribed values; K times `lift` is `of_lift`, K x `right` on the free unknowns.
     """
-    own, of_x = float(lift @ of_lift), 2 * load - right
-    return lambda x: ITERATION_ENERGY * abs(own + dot(x, of_x))
+    lift_energy, of_x = float(lift @ of_lift), 2 * load - right
+    return lambda x: ITERATION_ENERGY * abs(lift_energy + dot(x, of_x))
 
 
 def _refuse_lost(unbalanced: float, unfinished: float, residual: float) -> None:

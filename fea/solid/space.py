@@ -43,7 +43,7 @@ class SolidSpace:
         return cls(curved, mesh.cells, node)
 
     def on(self, patch: str) -> np.ndarray:
-        """Sorted nodes on a patch, its edges included; none where the part has no such patch."""
+        """Return the sorted nodes on a patch, its edges included; none where there is no such patch."""
         boundaries = self.curved.boundaries or {}
         if patch not in boundaries:
             return np.empty(0, int)
@@ -52,18 +52,18 @@ class SolidSpace:
     @property
     def volumes(self) -> np.ndarray:
         """Volumes of the curved elements (m,) [mm³]."""
-        points, weights = tet_rule(4)
+        points, weights = tet_rule()
         curved = self.curved
         return determinants(curved.doflocs.T, curved.dofs.element_dofs.T, points) @ weights
 
     def areas(self, patch: str) -> np.ndarray:
-        """Areas of a patch's curved facets (k,) [mm²]; empty if the part has no such patch."""
+        """Return the areas of a patch's curved facets (k,) [mm²]; empty if the part has no such patch."""
         points, weights = get_quadrature(RefTri, 4)
         facets = (self.curved.boundaries or {}).get(patch, np.empty(0, int))
         return np.asarray(self.curved.mapping().detDG(points, find=facets) @ weights)
 
     def facet_basis(self, patch: str, degree: int) -> Any:
-        """scikit-fem's basis on the curved facets of a patch, for the fields' values, not their slopes.
+        """Return scikit-fem's basis on a patch's curved facets, for the fields' values, not their slopes.
 
         The values at a facet's points are those on the flat facet. There its place in the element is a matter
         of corners; scikit-fem's search for it in the curved one does not end on coarse meshes.

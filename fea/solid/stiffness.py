@@ -59,7 +59,7 @@ mesh is cautious. With 0.7 and with 0.95 as many of 49 random shafts met the tol
 
 @dataclass(frozen=True)
 class MeshSequence:
-    """Which meshes of a part's sector there are, coarse to fine.
+    """The meshes of a part's sector, coarse to fine.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def solid_stiffness(
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
 ) -> RefinedStiffness:
-    """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
+    """Return K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Where a correction fails, this mesh and those after it solve all of the field. `shortfall` says why the
     tolerance was not reached: a finer mesh failed or would end after the deadline, the last has more elements
@@ -101,15 +101,15 @@ def solid_stiffness(
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(meshes, field, tolerance, progress, deadline)
-    mesh = found.mesh(meshes.first)
+    torsion = _SolidTorsion(meshes, field, tolerance, progress, deadline)
+    mesh = torsion.mesh(meshes.first)
     # a mesh that exists is solved, however late; `finer` then ends the loop
     late = deadline.elapsed() >= deadline.limit_s
-    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
-    if shortfall and len(found.meshes) < MAX_LEVELS:
-        progress(f"K ± {percent(found.half)} stays, {shortfall}")
-    answer = found.answer(symmetry, shortfall)
-    return RefinedStiffness(answer, tuple(found.meshes), found.turned)
+    shortfall = refine(torsion, mesh, NO_DEADLINE if late else deadline, meshes.most_elements(mesh))
+    if shortfall and len(torsion.meshes) < MAX_LEVELS:
+        progress(f"K ± {percent(torsion.half)} stays, {shortfall}")
+    answer = torsion.answer(symmetry, shortfall)
+    return RefinedStiffness(answer, tuple(torsion.meshes), torsion.turned)
 
 
 class _SolidTorsion:
@@ -149,18 +149,18 @@ class _SolidTorsion:
     def _add(self, model: Model) -> None:
         """If this raises, the results of the meshes before stay."""
         try:
-            found = self._field.solve(model)
-            estimate = self.estimate.with_mesh(found)
-            own = found.turned.K_energy * (1 + MESH_LIMIT) if found.turned else inf
-            if estimate.at_given_angle().lower > own:
+            result = self._field.solve(model)
+            estimate = self.estimate.with_mesh(result)
+            largest = result.turned.K_energy * (1 + MESH_LIMIT) if result.turned else inf
+            if estimate.at_given_angle().lower > largest:
                 raise CorrectionError("the correction leaves more of K than all of the field")
         except CorrectionError as fault:
             self._progress(str(fault))
             full = FullTorsion(self._field.material, self._field.driven)
-            found = full.solve(model)
-            estimate = _of(full, model.mesh).with_mesh(found)
+            result = full.solve(model)
+            estimate = _of(full, model.mesh).with_mesh(result)
             self._field = full
-        self.estimate, self.turned, self._errors = estimate, found.turned, found.errors
+        self.estimate, self.turned, self._errors = estimate, result.turned, result.errors
 
     @property
     def half(self) -> float:
@@ -176,8 +176,8 @@ class _SolidTorsion:
             return None
         made = self._sequence.by_error(mesh, self._errors)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            self.estimate.believed = self._field.scales.by_error
-            self.estimate.falls = ERROR_RATIOS
+            believed = self._field.scales.by_error
+            self.estimate = replace(self.estimate, believed=believed, falls=ERROR_RATIOS)
             return made
         left_s = self._deadline.limit_s - self._deadline.elapsed()
         wanted = near_step(self._tolerance, self.half)
@@ -209,7 +209,7 @@ def _of(field: TorsionSolver, first: TetMesh) -> ScaledEstimate:
 
 
 def near_step(tolerance: float, half: float) -> float:
-    """Next over last edge length at the singular edges, for bounds ± `half` where `tolerance` is wanted.
+    """Return the next over the last singular edge length, for bounds ± `half` where `tolerance` is wanted.
 
     Rounded to three digits: threads add in varying order, and the rounding of `half` must not change the
     mesh.

@@ -34,7 +34,7 @@ def _stress(basis: Any, u_cells: np.ndarray, material: Elastic) -> np.ndarray:
 
 
 def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
-    """Stress (n, 3, 3) MPa at the nodes: element values there, averaged by volume.
+    """Return the stress (n, 3, 3) MPa at the nodes: element values there, averaged by volume.
 
     `u` is (n, 3) Cartesian, mm.
     """
@@ -61,7 +61,7 @@ def _parts(elements: int) -> Iterator[np.ndarray]:
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
-    """√(3/2 s:s), s the deviator, of stresses (..., 3, 3)."""
+    """Return √(3/2 s:s), s the deviator, of stresses (..., 3, 3)."""
     trace = np.trace(stress, axis1=-2, axis2=-1)
     s = stress - trace[..., None, None] * np.eye(3) / 3
     return np.sqrt(1.5 * np.einsum("...ij,...ij->...", s, s))

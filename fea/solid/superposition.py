@@ -77,7 +77,7 @@ class Walls:
 
     @classmethod
     def of(cls, mesh: TetMesh, part: Part) -> Walls:
-        """Of a mesh of a part's sector.
+        """Find the walls of a mesh of a part's sector.
 
         Raises
         ------
@@ -88,8 +88,8 @@ class Walls:
             raise MeshQualityError("no facet of the mesh lies on a wall of holes or keyway")
         points, weights = get_quadrature(RefTri, WALL_DEGREE)
         element = ElementTriP2()
-        each = [element.lbasis(points, i) for i in range(6)]
-        shapes, slopes = np.stack([s for s, _ in each]), np.stack([s for _, s in each], axis=1)
+        basis = [element.lbasis(points, i) for i in range(6)]
+        shapes, slopes = np.stack([s for s, _ in basis]), np.stack([s for _, s in basis], axis=1)
         nodes = mesh.nodes[facets]
         x, y, z = np.einsum("aq,kad->dkq", shapes, nodes)
         along = np.einsum("iaq,kad->ikqd", slopes, nodes)
@@ -119,7 +119,7 @@ class Walls:
         return Places.of(space, self.r.ravel(), self.z.ravel())
 
     def pull(self, stress: Parts) -> np.ndarray:
-        """Traction times area (3, k, q) along r, φ, z [N] of stresses [MPa] at the points."""
+        """Return traction times area (3, k, q) along r, φ, z [N] of stresses [MPa] at the points."""
         n_r, n_t, n_z = self.area
         part = {k: np.asarray(v).reshape(self.r.shape) for k, v in stress.items()}
         rr, tt, zz, rz, rt, tz = (
@@ -134,15 +134,15 @@ class Walls:
         )
 
     def forces(self, pull: np.ndarray) -> np.ndarray:
-        """Nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
-        found = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
-        each = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
-        np.add.at(found, self.facets, each)
-        return found
+        """Return nodal forces (n, 3) Cartesian [N] of traction times area, real or complex."""
+        forces = np.zeros((len(self.mesh.nodes), 3), pull.dtype)
+        nodal = np.einsum("aq,cdkq,ckq->kad", self.shapes, self.axes, pull)
+        np.add.at(forces, self.facets, nodal)
+        return forces
 
 
 def wall_facets(mesh: TetMesh, part: Part) -> np.ndarray:
-    """Facets (k, 6) that lie in a cut, on no surface of revolution and no named patch."""
+    """Return the facets (k, 6) in a cut: on no surface of revolution and no named patch."""
     surfaces = part_surfaces(part, mesh.sector_deg)
     unnamed = mesh.facets[mesh.facet_patch == mesh.patches.index("")]
     centres = mesh.nodes[unnamed].mean(axis=1)
@@ -186,7 +186,7 @@ class WholeTurned:
 
 @dataclass(frozen=True)
 class WholeUnderLobes:
-    """A part with bolt holes, and what the lobe load does to it without them; `coarser` as above.
+    """A part with bolt holes, and its field under the lobe load without them; `coarser` as above.
 
     `stiffness` : K₀ under that load.
     """
@@ -200,19 +200,19 @@ class WholeUnderLobes:
 def at_cuts(part: Part) -> tuple[Box, ...]:
     """Where in the meridian the holes and the keyway of a part are, with the length of the first edges there:
     how wide the cut is, or how deep, if that is less."""
-    found = []
+    boxes = []
     if (bolts := part.bolts) is not None:
-        found.append(Box((bolts.inner, bolts.outer), (0.0, part.hole_depth), 2 * bolts.hole_radius))
+        boxes.append(Box((bolts.inner, bolts.outer), (0.0, part.hole_depth), 2 * bolts.hole_radius))
     if (slot := part.keyway) is not None:
         outer = max(r for s in part.meridian.segments for r, _ in (s.start, s.end))
         deep = min(2 * slot.half_width, outer - slot.floor)
-        found.append(Box((slot.floor, outer), (slot.start, part.length), deep))
-    return tuple(found)
+        boxes.append(Box((slot.floor, outer), (slot.start, part.length), deep))
+    return tuple(boxes)
 
 
 @dataclass(frozen=True)
 class TurnedWalls:
-    """What takes u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], for a turn of 1 rad.
+    """Forces (n, 3) Cartesian [N] that cancel u₀'s tractions on the walls, for a turn of 1 rad.
 
     `energy` : E of the whole part [N·mm].
     """
@@ -222,7 +222,7 @@ class TurnedWalls:
 
 
 def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> TurnedWalls:
-    """Of the walls of a mesh of the part's sector.
+    """Return the forces on the walls of a mesh of the part's sector.
 
     The energy in a cut is the work that is done on its boundary: on the walls alone where the rest is free or
     held still, as of holes. The keyway's is turned there, so the walls' share is told relative to that turn.
@@ -242,7 +242,7 @@ def turned_walls(walls: Walls, solved: SolvedTorsion, material: Elastic) -> Turn
 
 @dataclass(frozen=True)
 class WallWave:
-    """What takes a wave of u₀'s tractions off the walls: `forces` (n, 3) Cartesian [N], complex.
+    """Complex forces (n, 3) Cartesian [N] that cancel a wave of u₀'s tractions on the walls.
 
     `energy` : the wave's part of E, of the whole part [N·mm].
     """
@@ -255,7 +255,7 @@ class WallWave:
 def lobed_walls(
     walls: Walls, repeats: int, solved: SolvedLobes, material: Elastic
 ) -> Iterator[WallWave]:
-    """The waves of the lobe load on the walls of half a repeat, or of half the part (`repeats` 1).
+    """Return the waves of the lobe load on the walls of half a repeat, or of half the part (`repeats` 1).
 
     Raises
     ------
@@ -266,14 +266,14 @@ def lobed_walls(
     for number, amplitude in enumerate(solved.amplitudes):
         n = 2 * number
         harmonic = lobe_harmonic(n)
-        seen = {c: places.see(amplitude[:, c]) for c in harmonic.components}
-        stress = stress_of(harmonic, material, walls.r.ravel(), seen)
+        fields = {c: places.see(amplitude[:, c]) for c in harmonic.components}
+        stress = stress_of(harmonic, material, walls.r.ravel(), fields)
         (wave,) = waves((n,), repeats)
         cosine, sine = (wave.of(partial(_around, f, n), walls.phi) for f in (np.cos, np.sin))
         even = {k: stress[k] for k in (R_THETA, THETA_Z)}
         odd = {k: part for k, part in stress.items() if k not in even}
         pull = cosine * walls.pull(even) - sine * walls.pull(odd)
-        moved = _moved(seen, cosine, sine)
+        moved = _moved(fields, cosine, sine)
         sums = of_wave.setdefault(wave, [np.zeros_like(pull, complex) for _ in range(2)])
         sums[0] += pull
         sums[1] += moved
@@ -287,10 +287,10 @@ def _around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarra
     return function(n * phi)
 
 
-def _moved(seen: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
+def _moved(fields: Mapping[int, Any], cosine: np.ndarray, sine: np.ndarray) -> np.ndarray:
     """Displacements (3, k, q) along r, φ, z of amplitudes U, V, W: −U sin nφ, V cos nφ, −W sin nφ."""
-    found = np.zeros((3, *cosine.shape), complex)
+    displacement = np.zeros((3, *cosine.shape), complex)
     for component, factor in ((RADIAL, -sine), (TANGENTIAL, cosine), (AXIAL, -sine)):
-        if component in seen:
-            found[component] = factor * np.asarray(seen[component]).reshape(cosine.shape)
-    return found
+        if component in fields:
+            displacement[component] = factor * np.asarray(fields[component]).reshape(cosine.shape)
+    return displacement

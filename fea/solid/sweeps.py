@@ -23,10 +23,10 @@ def goes_about_axis(part: Part) -> bool:
 
 
 def half_holes(part: Part, sector_deg: float) -> int:
-    """How many halves of bolt holes a sector from the middle of the first has; 0 without holes."""
+    """Return how many halves of bolt holes a sector from the middle of the first has; 0 without holes."""
     return 0 if part.bolts is None else round(2 * part.bolts.count * sector_deg / 360)
 
 
 def bent_block(part: Part, column: HoledColumn | None) -> SlottedTube | None:
-    """The keyway onto which the mesh is bent, above the holes' column; None where it is not."""
+    """Return the keyway onto which the mesh is bent, above the holes' column; None where it is not."""
     return block_of(part, 0.0 if column is None else column.high)

@@ -57,7 +57,7 @@ def swept_mesh(
     finer: Finer | None = None,
     most_elements: float = inf,
 ) -> BisectableMesh | None:
-    """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
+    """Return the mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
     A shaft with holes that are not in a plain column, or a keyway that cannot be bent into place, is swept
     along the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose
@@ -101,12 +101,12 @@ def _prisms(
 
     The sector is a wedge [rad] and its mirror images, `copies` in all.
     """
-    own = outline if column is None else column.rest(outline)
+    rest_outline = outline if column is None else column.rest(outline)
     critical = critical_points(outline)
     if block is None:
-        first = triangulate(own)
+        first = triangulate(rest_outline)
     else:
-        first = triangulate(block.outline(own), block.edges)
+        first = triangulate(block.outline(rest_outline), block.edges)
         grading = block.grading(grading)
     rest = graded_mesh(first, critical, grading, finer if block is None else block.finer(grading))
     step = LARGEST_SWEPT_STEP if finer is None else finer.step_rad
@@ -140,9 +140,9 @@ def _prisms(
         side = block.side(np.concatenate([mirrored(angles, wedge, k) for k in range(copies)]))
         prisms = prisms[~block.holds(polar[prisms].mean(axis=1), side)]
         bend = partial(block.bent, side=side, sector=wedge * copies)
-    found = cut(prisms)
-    used, compact = np.unique(found, return_inverse=True)
-    return polar[used], compact.reshape(found.shape), bend
+    tets = cut(prisms)
+    used, compact = np.unique(tets, return_inverse=True)
+    return polar[used], compact.reshape(tets.shape), bend
 
 
 def _curved(

@@ -15,7 +15,7 @@ from flexspline.geometry.part import Part
 
 
 def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
-    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
+    """Return points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
 
     The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
     """
@@ -24,10 +24,10 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     outline, column = part.meridian, column_of(part)
     block = bent_block(part, column)
     sector = radians(sector_deg)
-    found = []
+    lines = []
     for r, z in {*outline.sharp_corners, *outline.patch_edges}:
         phi = np.linspace(0, sector, max(2, ceil(r * sector / spacing) + 1))
-        found.append(cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
+        lines.append(cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
     if column is not None:
         rim = max(2, ceil(np.pi * column.hole_radius / spacing) + 1)
         turn = np.linspace(0, np.pi, rim)
@@ -39,8 +39,8 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
         for k in range(copies):
             around = mirrored(turned, wedge, k)
             for z in (column.low, column.depth):
-                found.append(cartesian(np.column_stack([away, around, np.full_like(away, z)])))
-    points = np.vstack(found)
+                lines.append(cartesian(np.column_stack([away, around, np.full_like(away, z)])))
+    points = np.vstack(lines)
     if block is None:
         return points
     return np.vstack([points[~block.cuts(points)], block.rims(spacing)])

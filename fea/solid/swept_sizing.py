@@ -47,7 +47,7 @@ class Finer:
 def graded_mesh(
     mesh: MeridianMesh, critical: np.ndarray, grading: Grading, finer: Finer | None
 ) -> MeridianMesh:
-    """Triangles halved until no edge is longer than the grading asks for, and `finer`."""
+    """Halve triangles until no edge is longer than the grading and `finer` ask for."""
 
     def nearest(places: np.ndarray, points: np.ndarray) -> np.ndarray:
         return np.linalg.norm(points[:, None] - places, axis=2).min(axis=1)
@@ -66,7 +66,7 @@ def graded_mesh(
 def plan_mesh(
     column: HoledColumn, sector: float, far: float, arc_rad: float = LARGEST_ARC
 ) -> MeridianMesh:
-    """The column's plan, finer beside the hole; a core on the axis is a fan."""
+    """Return the column's plan, finer beside the hole; a core on the axis is a fan."""
     centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
 
     def wanted(points: np.ndarray) -> np.ndarray:
@@ -97,7 +97,7 @@ def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> Me
 
 
 def critical_points(outline: Meridian) -> np.ndarray:
-    """Points (k, 2) of the meridian where the torsional stress is singular.
+    """Return the points (k, 2) of the meridian where the torsional stress is singular.
 
     Patch edges and inside corners, as `TaggedSurface.critical_edges`.
     """

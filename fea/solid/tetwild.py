@@ -115,7 +115,7 @@ def _read(made: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Volumes (t,) mm³, positive when corner 3 lies on the side of (1-0)×(2-0)."""
+    """Return volumes (t,) mm³, positive when corner 3 lies on the side of (1-0)×(2-0)."""
     a, b, c = (points[tets[:, i]] - points[tets[:, 0]] for i in (1, 2, 3))
     return np.einsum("ij,ij->i", np.cross(a, b), c) / 6
 
@@ -126,7 +126,7 @@ parent does not."""
 
 
 def mesh_in_child(given: str, made: str, parent: str) -> None:
-    """What the child does: a mesh of the file `given` into the file `made`, for the process `parent`."""
+    """Mesh the file `given` into the file `made`, in a child of the process `parent`."""
     end_with(int(parent))  # elsewhere than on Linux by the time limit
     import pytetwild
 

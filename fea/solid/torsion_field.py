@@ -38,28 +38,28 @@ class CorrectionError(SolidError):
 
 @dataclass(frozen=True)
 class TurnedMesh(MeshResult):
-    """Of torsion, with the errors (m,) of its elements; `turned`: all of the field, if it was solved too."""
+    """One mesh in torsion, with its elements' errors (m,); `turned`: the whole field, if it was solved."""
 
     errors: np.ndarray = field(kw_only=True)
     turned: SolvedStiffness | None = field(default=None, kw_only=True)
 
 
 class TorsionSolver(FieldSolver[TurnedMesh], Protocol):
-    """Of a part whose `driven` patch is turned."""
+    """Solves a part whose `driven` patch is turned."""
 
     driven: str
 
 
 @dataclass
 class FullTorsion:
-    """All of the field of a part whose `driven` patch is turned."""
+    """Solves the whole field of a part whose `driven` patch is turned."""
 
     material: Elastic
     driven: str
     scales: ErrorScales = FULL_SCALES
 
     def solve(self, model: Model) -> TurnedMesh:
-        """On one mesh; raises SolidError, MemoryError."""
+        """Solve on one mesh; raises SolidError, MemoryError."""
         solved = torsion(model, self.driven)
         error = energy_error(model.mesh, solved.displacement, self.material)
         return TurnedMesh(solved.level, error.relative, errors=error.error, turned=solved)
@@ -71,7 +71,7 @@ class FullTorsion:
 
 @dataclass
 class TorsionCorrection:
-    """What the part's `cuts`, its holes and keyway, change of it (`fea.solid.superposition`).
+    """Solves only the change by `cuts`, the holes and keyway (`fea.solid.superposition`).
 
     All of the field is solved on the first mesh only: it may contradict the correction. On each of the meshes
     after it, it would take as long again. `wholes` : the part without them, solved better and better, one for
@@ -86,7 +86,7 @@ class TorsionCorrection:
     _whole: WholeTurned | None = None
 
     def solve(self, model: Model) -> TurnedMesh:
-        """On one mesh.
+        """Solve on one mesh.
 
         Raises
         ------

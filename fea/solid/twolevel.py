@@ -35,16 +35,16 @@ smoother would amplify that mode."""
 
 
 def corner_interpolation(mesh: TetMesh, frames: NodeFrames) -> csr_matrix:
-    """P (3n, 3c): every node's displacement from the corners', each in its own axes."""
+    """Return P (3n, 3c): every node's displacement from the corners', each in its own axes."""
     n, corners = len(mesh.nodes), int(mesh.cells[:, :4].max()) + 1
     middle, first = np.unique(mesh.cells[:, 4:].ravel(), return_index=True)
     ends = mesh.cells[:, EDGES].reshape(-1, 2)[first]
     half = [0.5 * np.matmul(frames.axes[middle].swapaxes(1, 2), frames.axes[end]) for end in ends.T]
-    own = np.broadcast_to(np.eye(3), (corners, 3, 3))
+    identity = np.broadcast_to(np.eye(3), (corners, 3, 3))
     rows = np.concatenate([np.arange(corners), middle, middle])
     columns = np.concatenate([np.arange(corners), ends[:, 0], ends[:, 1]])
     order = np.argsort(rows, kind="stable")
-    blocks = np.concatenate([own, *half])[order]
+    blocks = np.concatenate([identity, *half])[order]
     indptr = np.searchsorted(rows[order], np.arange(n + 1))
     return bsr_matrix((blocks, columns[order], indptr), shape=(3 * n, 3 * corners)).tocsr()
 
@@ -94,15 +94,15 @@ class TwoLevel:
         """
         if not right.any():
             return np.zeros_like(right), 0.0
-        found = conjugate_gradients(
+        solution = conjugate_gradients(
             self._double.__matmul__, self._precondition, right, MOST_STEPS, allowed, worth
         )
         # the recurrence drifts from the true residual by rounding: the energy is of the true one
-        r = right - self._double @ found.x
-        left, most = dot(r, self._precondition(r)) / found.spectrum[0], allowed(found.x)
-        if found.early and left > most:
-            raise IterationError(found.steps, left, most)
-        return found.x, left
+        r = right - self._double @ solution.x
+        left, most = dot(r, self._precondition(r)) / solution.spectrum[0], allowed(solution.x)
+        if solution.early and left > most:
+            raise IterationError(solution.steps, left, most)
+        return solution.x, left
 
     def _precondition(self, residual: np.ndarray) -> np.ndarray:
         r = residual.astype(np.float32)
@@ -113,7 +113,7 @@ class TwoLevel:
 
 @contextmanager
 def two_level(matrix: csr_matrix, free: np.ndarray, corners: csr_matrix) -> Iterator[TwoLevel]:
-    """As `TwoLevel`, with the corners' factors, for as long as the context lasts.
+    """Give a `TwoLevel` with the corners' factors, for as long as the context lasts.
 
     Raises
     ------
@@ -133,8 +133,8 @@ class _Smoother:
     def __init__(self, matrix: BlockProduct, inverse: BlockProduct, free: np.ndarray) -> None:
         self._matrix, self._inverse = matrix, inverse
         start = np.random.default_rng(0).standard_normal(len(free)).astype(np.float32) * free
-        seen = conjugate_gradients(matrix.__matmul__, inverse.__matmul__, start, SPECTRUM_STEPS)
-        high = SPECTRUM_SAFETY * seen.spectrum[1]
+        iterated = conjugate_gradients(matrix.__matmul__, inverse.__matmul__, start, SPECTRUM_STEPS)
+        high = SPECTRUM_SAFETY * iterated.spectrum[1]
         low = high / SMOOTHED_RATIO
         self._middle, self._half = (high + low) / 2, (high - low) / 2
 

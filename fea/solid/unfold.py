@@ -24,7 +24,7 @@ MIRRORED_FACET = [0, 2, 1, 5, 4, 3]
 
 
 def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
-    """Points (n, 3) reflected back into the sector from 0 to `sector_deg`."""
+    """Return points (n, 3) reflected back into the sector from 0 to `sector_deg`."""
     step = np.radians(sector_deg)
     phi = np.arctan2(points[:, 1], points[:, 0]) % (2 * step)
     phi = np.minimum(phi, 2 * step - phi)
@@ -52,26 +52,26 @@ class Unfolding:
     sector_deg: float
 
     def vectors(self, values: np.ndarray, parity: Parity) -> np.ndarray:
-        """A vector field (n, 3), Cartesian, from the sector's; `parity`: what a reflection does to it.
+        """Return a Cartesian vector field (n, 3) from the sector's; `parity`: how a reflection changes it.
 
         `values` (copies, n, 3) are the copies' own, each as it is before that is turned and reflected.
         """
-        found = values[self.node] if values.ndim == 2 else values[self.copy, self.node]
+        vectors = values[self.node] if values.ndim == 2 else values[self.copy, self.node]
         odd = self.copy % 2 == 1
-        found[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
+        vectors[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
         turn = np.radians((self.copy + odd) * self.sector_deg)
         c, s = np.cos(turn), np.sin(turn)
-        x, y, z = found.T
+        x, y, z = vectors.T
         return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 
 def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
-    """The sector from 0 to `sector_deg`; see `unfolding`."""
+    """Return the sector from 0 to `sector_deg`; see `unfolding`."""
     return unfolding(mesh, sector_deg).mesh
 
 
 def unfolding(mesh: TetMesh, sector_deg: float) -> Unfolding:
-    """The sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane.
+    """Return the sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane.
 
     At 360° it is closed: the last copy's plane is the first one's, and no plane of symmetry is left.
 

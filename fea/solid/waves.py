@@ -33,19 +33,19 @@ class CyclicWave:
 
     @property
     def phase(self) -> float:
-        """Of half a repeat [rad]."""
+        """Phase of half a repeat [rad]."""
         return pi * self.number / self.repeats
 
     def of(self, function: Callable[[np.ndarray], np.ndarray], phi: np.ndarray) -> np.ndarray:
-        """f_p at angles [rad] of a function of the angle with the period 2π; complex, real where p is."""
-        found = np.zeros(phi.shape, complex)
+        """Return f_p at angles [rad] of a function with the period 2π; complex, real where p is."""
+        total = np.zeros(phi.shape, complex)
         for j in range(self.repeats):
             turn = 2 * pi * j / self.repeats
-            found += np.exp(-1j * self.number * turn) * function(phi + turn)
-        return (found.real if self.is_real else found) / self.repeats
+            total += np.exp(-1j * self.number * turn) * function(phi + turn)
+        return (total.real if self.is_real else total) / self.repeats
 
     def on_copy(self, values: np.ndarray, copy: int) -> np.ndarray:
-        """What the wave and its conjugate are on a copy of half a repeat, before that is put in place.
+        """Return the wave and its conjugate on a copy of half a repeat, before it is put in place.
 
         Copies are counted from angle 0, and those of odd number are reflections (`solid.unfold`): the field
         is even or odd at angle 0, so a reflection makes of it its conjugate.
@@ -56,6 +56,6 @@ class CyclicWave:
 
 
 def waves(orders: Iterable[int], repeats: int) -> tuple[CyclicWave, ...]:
-    """The waves that hold circumferential orders ±k, from p = 0 up."""
+    """Return the waves that hold circumferential orders ±k, from p = 0 up."""
     numbers = {min(k % repeats, -k % repeats) for k in orders}
     return tuple(CyclicWave(p, repeats) for p in sorted(numbers))

@@ -44,7 +44,7 @@ class WholePart:
 def whole_part(
     mesh: TetMesh, displacement: np.ndarray, mises: np.ndarray, parity: Parity
 ) -> WholePart:
-    """All 360° of a part of which `mesh` is a sector.
+    """Return all 360° of a part of which `mesh` is a sector.
 
     Parameters
     ----------
@@ -55,28 +55,28 @@ def whole_part(
     ------
     ValueError : the sector does not divide the circle into mirrored pairs.
     """
-    found = unfolding(mesh, 360.0)
-    own = face_patches(mesh)
-    mirrored = own[:, MIRRORED_FACES]
+    unfolded = unfolding(mesh, 360.0)
+    patch = face_patches(mesh)
+    mirrored = patch[:, MIRRORED_FACES]
     return WholePart(
-        nodes=found.mesh.nodes,
-        cells=found.mesh.cells,
-        displacement=found.vectors(displacement, parity),
-        mises=mises[found.node],
-        face_patch=np.concatenate([mirrored if k % 2 else own for k in range(found.copies)]),
-        start_deg=np.repeat(np.arange(found.copies) * mesh.sector_deg, mesh.elements),
+        nodes=unfolded.mesh.nodes,
+        cells=unfolded.mesh.cells,
+        displacement=unfolded.vectors(displacement, parity),
+        mises=mises[unfolded.node],
+        face_patch=np.concatenate([mirrored if k % 2 else patch for k in range(unfolded.copies)]),
+        start_deg=np.repeat(np.arange(unfolded.copies) * mesh.sector_deg, mesh.elements),
         patches=mesh.patches,
         sector_deg=mesh.sector_deg,
     )
 
 
 def unloaded_part(mesh: TetMesh) -> WholePart:
-    """All 360° of a part that nothing moves."""
+    """Return all 360° of a part that nothing moves."""
     return whole_part(mesh, np.zeros_like(mesh.nodes), np.zeros(len(mesh.nodes)), "symmetric")
 
 
 def face_patches(mesh: TetMesh) -> np.ndarray:
-    """(m, 4) patch index of every cell's faces, -1 where the face is inside the material."""
+    """Return the patch (m, 4) of every cell's faces, -1 where the face is inside the material."""
     size = len(mesh.nodes)
     faces = np.sort(mesh.cells[:, FACES[:, :3]].reshape(-1, 3), axis=1).astype(np.int64)
     wanted = np.sort(mesh.facets[:, :3], axis=1).astype(np.int64)

@@ -104,7 +104,7 @@ class CellModel:
         return straight(self.mesh, self.mesh.points, DEGREE, patches)
 
     def bending(self, poissons_ratio: float) -> float:
-        """As `plain.bending`: M/E' per δ/θ [mm³]. No Poisson's ratio changes it."""
+        """Return M/E' per δ/θ [mm³], as `plain.bending`; it does not depend on Poisson's ratio."""
         turned = {
             **self._on("tooth", TANGENTIAL, np.zeros_like),
             **self._on("space", TANGENTIAL, lambda r: r - self.cell.root),
@@ -113,7 +113,7 @@ class CellModel:
         return twice_energy * self.cell.half_pitch
 
     def membrane(self, poissons_ratio: float) -> float:
-        """As `plain.membrane`: mean pressure/E' per radial displacement of the seat [1/mm]."""
+        """Return the mean pressure/E' per radial displacement of the seat [1/mm], as `plain.membrane`."""
         grown = {
             **self._on("tooth", TANGENTIAL, np.zeros_like),
             **self._on("space", TANGENTIAL, np.zeros_like),
@@ -123,7 +123,7 @@ class CellModel:
         return twice_energy / (self.cell.inner * self.cell.half_pitch)
 
     def torsion(self) -> float:
-        """As `plain.torsion`: J of the whole ring [mm⁴]."""
+        """Return J of the whole ring [mm⁴], as `plain.torsion`."""
         basis, rho = self.space.basis, self.cell.unroll
         matrix = WARPING.assemble(basis, rho=rho)
         load = -ROTATION.assemble(basis, rho=rho)
@@ -160,8 +160,8 @@ class CellModel:
 
 
 def _solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
-    found = solved(matrix, load)
-    residual = relative_residual(matrix, found, load)
+    solution = solved(matrix, load)
+    residual = relative_residual(matrix, solution, load)
     if not residual < LARGEST_RESIDUAL:
         raise ToothedRingError(f"residual {residual:.1e} of {len(load)} equations is too large")
-    return found
+    return solution

@@ -73,7 +73,7 @@ def equivalent_ring(cell: ToothCell, poissons_ratio: float) -> EquivalentRing:
             f"triangles, wanted {LARGEST_CHANGE:.0e}: ring_thickness_mm may be too small a part of "
             'module_mm; teeth = "none" works'
         )
-    bending, membrane, torsion = rings.found.tolist()
+    bending, membrane, torsion = rings.thicknesses.tolist()
     rim = cell.root - cell.inner
     return EquivalentRing(rim, bending, membrane, torsion, rings.change, rings.elements)
 
@@ -84,16 +84,16 @@ class _Rings:
     def __init__(self, cell: ToothCell, poissons_ratio: float) -> None:
         self._cell, self._nu = cell, poissons_ratio
         self._share = 1.0
-        self.found, self.change, self.elements = np.full(3, np.inf), np.inf, 0
+        self.thicknesses, self.change, self.elements = np.full(3, np.inf), np.inf, 0
 
     def first_mesh(self) -> MeridianMesh:
         """No edge longer than the tooth's half pitch."""
         return self._sized(triangulate(self._cell.outline))
 
     def solve(self, mesh: MeridianMesh) -> None:
-        found = np.array(_thicknesses(CellModel(self._cell, mesh), self._nu))
-        self.change = float((self.found / found - 1).max())
-        self.found, self.elements = found, mesh.elements
+        thicknesses = np.array(_thicknesses(CellModel(self._cell, mesh), self._nu))
+        self.change = float((self.thicknesses / thicknesses - 1).max())
+        self.thicknesses, self.elements = thicknesses, mesh.elements
 
     @property
     def met(self) -> bool:

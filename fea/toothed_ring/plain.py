@@ -12,7 +12,7 @@ from flexspline.geometry.tube import polar_moment_mm4
 
 
 def bending(a: float, b: float) -> float:
-    """Moment per unit of relative turn of the sections per angle, over E' [mm³].
+    """Return the moment per relative turn of the sections per angle, over E' [mm³].
 
     M = E' S δ/θ with S = ((b² − a²)² − 4 a² b² L²) / (8 (b² − a²)), L = ln(b/a), which is
     ab (sinh²L − L²) / (4 sinh L); t³/(12 R) for a thin ring. Golovin's curved bar: Timoshenko and
@@ -35,7 +35,7 @@ def _sinh_less(x: float) -> float:
 
 
 def membrane(a: float, b: float, poissons_ratio: float) -> float:
-    """Pressure per radial displacement of the inner surface, over E' [1/mm]: Lamé's cylinder.
+    """Return the pressure per radial displacement of the inner surface, over E' [1/mm]: Lamé's cylinder.
 
     u(a) = p a ((1 − 2ν) a² + b²) (1 + ν) / (E (b² − a²)); t/a² for a thin ring.
     """
@@ -44,12 +44,12 @@ def membrane(a: float, b: float, poissons_ratio: float) -> float:
 
 
 def torsion(a: float, b: float) -> float:
-    """J [mm⁴] of the whole tube."""
+    """Return J [mm⁴] of the whole tube."""
     return polar_moment_mm4(b, a)
 
 
 def thickness(stiffness: Callable[[float, float], float], inner: float, wanted: float) -> float:
-    """Thickness [mm] of the ring on `inner` [mm] whose `stiffness(a, b)` is `wanted` > 0."""
+    """Return the thickness [mm] of the ring on `inner` [mm] whose `stiffness(a, b)` is `wanted` > 0."""
     from scipy.optimize import brentq
 
     def excess(t: float) -> float:

@@ -20,7 +20,7 @@ from flexspline.pipeline.parts import AnalysisContext
 
 
 def chords(torques_Nm: Sequence[float] | np.ndarray, angles_rad: np.ndarray) -> tuple[float, ...]:
-    """Stiffness [N·m/rad] between each torque and the next."""
+    """Return the stiffness [N·m/rad] between each torque and the next."""
     return tuple((np.diff(torques_Nm) / np.diff(angles_rad)).tolist())
 
 
@@ -36,35 +36,35 @@ class Chain:
     holes: float
 
     def angle(self, at: Equilibrium) -> float:
-        """Rotation of the output [rad]."""
+        """Return the rotation of the output [rad]."""
         return at.rotation + self.torque_Nm(at) * (self.shaft + self.holes)
 
     @staticmethod
     def torque_Nm(at: Equilibrium) -> float:
-        """On the whole gear; an equilibrium's is that of one half [N·mm]."""
+        """Return the torque on the whole gear; an equilibrium's is that of one half [N·mm]."""
         return 2 * at.torque / NMM_PER_NM
 
     def along(
         self, torques_Nm: Sequence[float], start: Equilibrium | None = None
     ) -> list[Equilibrium]:
-        """One after the other, each begun from the one before; `start`: near the first, of a gear like it.
+        """Solve one torque after the other, each from the one before; `start`: an equilibrium near the first.
 
         Raises
         ------
         EquilibriumError
         """
-        found: list[Equilibrium] = []
+        states: list[Equilibrium] = []
         with one_thread():
             for torque in torques_Nm:
-                found.append(self.model.at_torque(torque, found[-1] if found else start))
-        return found
+                states.append(self.model.at_torque(torque, states[-1] if states else start))
+        return states
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:
-        """Of the output [rad]; errors as `along`."""
+        """Return the output's rotations [rad]; errors as `along`."""
         return np.array([self.angle(at) for at in self.along(torques_Nm)])
 
     def shares(self, at: Equilibrium) -> dict[str, float]:
-        """Of dθ/dT, in the order in which torque passes."""
+        """Return the shares of dθ/dT, in the order in which torque passes."""
         parts = {k: v * NMM_PER_NM for k, v in self.model.compliance_of(at).items()}
         parts["flexspline"] += self.holes
         parts["shaft"] = self.shaft
@@ -73,7 +73,7 @@ class Chain:
 
 
 def chain_of(context: AnalysisContext, K_e_Nm_per_rad: float | None = None) -> Chain:
-    """A design's contact model, its shaft (of that stiffness, where it is known) and its bolt holes.
+    """Return a design's contact model, its shaft (of that stiffness, where it is known) and its bolt holes.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def chain_of(context: AnalysisContext, K_e_Nm_per_rad: float | None = None) -> C
 
 
 def fast_chain(design: Design, K_e_Nm_per_rad: float, relative_width: float) -> Chain:
-    """The same with a shaft that is known already; `relative_width` of the K that tell what bolt holes do.
+    """Return the chain with a known shaft; `relative_width` is that of the K that tell what bolt holes do.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _of_holes(part: Part, relative_width: float) -> float:
     """What bolt holes add [rad/(N·m)], by K_b of the case `uniform`: 1/K with them less 1/K without."""
     if part.bolts is None:
         return 0.0
-    own, filled = (
-        revolved.torsion(each, relative_width).K_Nm_per_rad for each in (part, part.without_holes())
+    holed, filled = (
+        revolved.torsion(body, relative_width).K_Nm_per_rad for body in (part, part.without_holes())
     )
-    return max(0.0, 1 / own - 1 / filled)
+    return max(0.0, 1 / holed - 1 / filled)

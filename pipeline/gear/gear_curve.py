@@ -74,7 +74,7 @@ CARRYING_SHARE = 1e-3
 
 @dataclass(frozen=True)
 class GearCurve:
-    """What the gear's output does under torque.
+    """The torque-angle curve of the gear's output, and its figures.
 
     Attributes
     ----------
@@ -122,19 +122,19 @@ class GearCurve:
 
     @property
     def lost_motion_torque_Nm(self) -> float:
-        """Each way."""
+        """Torque of the lost motion, each way."""
         return LOST_MOTION_SHARE * self.rated_torque_Nm
 
     @property
     def free_angle_arcsec(self) -> float | None:
-        """Between both flanks, which K1 leaves out; None where nobody asked for the terms."""
+        """Free angle between both flanks, which K1 leaves out; None without the terms."""
         if not self.terms_arcsec:
             return None
         return sum(self.terms_arcsec[term] for term in FREE_ANGLE_TERMS)
 
 
 def gear_curve(context: AnalysisContext) -> GearCurve:
-    """The whole answer of `flexspline gear`.
+    """Return the whole answer of `flexspline gear`.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
 
 
 def curve_of(design: Design, chain: Chain, start: Equilibrium | None = None) -> GearCurve:
-    """K1 to K3, lost motion, the loop, and what carries at rated torque; `start`: at a small torque."""
+    """Return K1 to K3, lost motion, the loop, and the loads at rated torque; `start`: at a small torque."""
     rated, _ = rated_torque(design)
     up = rated * np.array(LOADING)
     states = chain.along(up.tolist(), start)

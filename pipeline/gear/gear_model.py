@@ -58,7 +58,7 @@ is a stub of this length."""
 def gear_model(
     design: Design, flexspline: Part, places: int | None = None, face_places: int | None = None
 ) -> GearModel:
-    """The gear without its shaft and bolt holes.
+    """Return the contact model of the gear without its shaft and bolt holes.
 
     `flexspline` is the design's, but for drawn teeth, which are the plain ring as stiff. `places`: along the
     seat, at which the rim can touch; None: PLACES. `face_places`: along a tooth; None: FACE_PLACES.
@@ -153,12 +153,12 @@ def _wave_generator(
 
 
 def even(balls: int) -> int:
-    """The next even number: two lobes share the balls evenly."""
+    """Return the next even number: two lobes share the balls evenly."""
     return balls + balls % 2
 
 
 def drawn_flanks(design: Design) -> DrawnFlanks:
-    """Of the drawn tooth, and of the space that the same basic rack cuts into the circular spline.
+    """Return flanks of the drawn tooth, and of the space that its basic rack cuts into the circular spline.
 
     An internal gear's space is the tooth of an external one. Both reach from a module inside the pitch circle
     (the circular spline's tip; a tooth's root may be nearer) to one outside.
@@ -181,7 +181,7 @@ def drawn_flanks(design: Design) -> DrawnFlanks:
 
 
 def pair_compliance(design: Design) -> float:
-    """Of a tooth of the flexspline and one as large of the circular spline, at the pitch point [mm/N]."""
+    """Return the compliance of a pair of equally large teeth at the pitch point [mm/N]."""
     f, gear = design.flexspline, design.gear
     pitch = gear.pitch_radius_mm
     material = design.material
@@ -190,8 +190,8 @@ def pair_compliance(design: Design) -> float:
     teeth = (
         tooth(
             lever, gear.tooth_thickness_mm, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
-            f.ring_width_mm, each,
+            f.ring_width_mm, steel,
         )
-        for each in materials
+        for steel in materials
     )  # fmt: skip
     return sum(teeth) + flank_contact(f.ring_width_mm, *materials)

@@ -66,7 +66,7 @@ ACT_TOGETHER = 0.2
 
 
 def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
-    """Largest force of a pair of teeth where both flanks press without torque [N]; 0 where one is free."""
+    """Return the largest force of a pair that presses on both flanks without torque [N], or 0."""
     front, back = np.split(unloaded.loaded[model.flanks], 2)
     if not (front.any() and back.any()):
         return 0.0
@@ -74,16 +74,16 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
 
 
 def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[GearWarning]:
-    """What makes it a gear that was not intended."""
-    found: list[GearWarning] = []
+    """Return why this is a gear that was not intended."""
+    listed: list[GearWarning] = []
     if preload_N := both_press_N(model, unloaded):
-        found.append(_pressing(preload_N, design, model, unloaded))
+        listed.append(_pressing(preload_N, design, model, unloaded))
     if cuts := _cuts_in(model.mesh):
-        found.append(cuts)
+        listed.append(cuts)
     rated, _ = rated_torque(design)
     if design.load.torque_Nm > BEYOND_RATED * rated:
-        found.append(LoadBeyondRated(design.load.torque_Nm, rated))
-    return found
+        listed.append(LoadBeyondRated(design.load.torque_Nm, rated))
+    return listed
 
 
 def _cuts_in(mesh: ToothMesh) -> CuttingFlanks | None:
@@ -115,36 +115,36 @@ def _pressing(
     if _cuts_in(model.mesh):
         return PressingFlanks(preload_N, "flanks_cut")
     front, back = model.flank_forces(unloaded)
-    ahead, behind = (degrees(model.tooth_angles[each.argmax()]) for each in (front, back))
+    ahead, behind = (degrees(model.tooth_angles[forces.argmax()]) for forces in (front, back))
     return PressingFlanks(preload_N, TightFlanks(ahead, behind))
 
 
 def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]:
-    """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
-    found: list[GearNote] = []
+    """Return the simplifications; `teeth` (t,) [N]: forces at rated torque."""
+    listed: list[GearNote] = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
-        found.append(HalvedBalls(balls, even(balls)))
+        listed.append(HalvedBalls(balls, even(balls)))
     if design.gear.ratio < LOW_RATIO:
-        found.append(LowRatio(LOW_RATIO))
+        listed.append(LowRatio(LOW_RATIO))
     mesh = model.mesh
     if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
         removed_um = 1e3 * mesh.largest_relief
-        found.append(RelievedFlanks(degrees(mesh.relieved_from), removed_um, degrees(mesh.reach)))
+        listed.append(RelievedFlanks(degrees(mesh.relieved_from), removed_um, degrees(mesh.reach)))
     if mesh.face == "relieved":
         outwards, along = model.rim.cone(mesh.stroke)
         off = np.abs(mesh.closing(model.tooth_angles[:, None], outwards, along)).max()
-        found.append(ShapedFaces(float(1e3 * off)))
+        listed.append(ShapedFaces(float(1e3 * off)))
     if design.flexspline.teeth == "drawn" and mesh.flanks != "drawn":
-        found.append(StraightFlanks(design.gear.pressure_angle_deg))
+        listed.append(StraightFlanks(design.gear.pressure_angle_deg))
     size = np.abs(teeth)
     if max(size[0], size[-1]) > AT_THE_END * size.max():
-        found.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
-    return found
+        listed.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
+    return listed
 
 
 def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
-    """A note for K2 below K1 and for K3 below K2 [N·m/rad]: a catalogue's gear grows stiffer."""
+    """Return a note for K2 below K1 and for K3 below K2 [N·m/rad]: a catalogue's gear grows stiffer."""
     names = [f"K{place}" for place in range(1, len(chords) + 1)]
     return [
         FallingStiffness(lower, higher, 1 - K / before, preload_N)
@@ -154,7 +154,7 @@ def of_chords(chords: Sequence[float], preload_N: float) -> list[GearNote]:
 
 
 def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:
-    """A note where terms and lost motion are not of one torque."""
+    """Return a note where terms and lost motion are not of one torque."""
     if abs(load_Nm / lost_motion_Nm - 1) <= SAME_TORQUE:
         return []
     return [TwoTorques(load_Nm, lost_motion_Nm)]
@@ -163,7 +163,7 @@ def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:
 def of_play(
     terms_arcsec: Mapping[str, float], play: PlayEffect, full_stroke: bool
 ) -> tuple[list[GearWarning], list[GearNote]]:
-    """Warnings and notes where the bearing's play does not simply open the mesh.
+    """Return warnings and notes where the bearing's play does not simply open the mesh.
 
     `full_stroke`: the plug's stroke is m(z2 - z1)/2.
     """

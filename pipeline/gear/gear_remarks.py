@@ -54,7 +54,7 @@ class CuttingFlanks:
 
 @dataclass(frozen=True)
 class LoadBeyondRated:
-    """Far beyond, where nothing is elastic."""
+    """The load is far beyond rated torque, where nothing is elastic."""
 
     load_Nm: float
     rated_Nm: float
@@ -62,7 +62,7 @@ class LoadBeyondRated:
 
 @dataclass(frozen=True)
 class EarlyEnd:
-    """An estimate below rated torque."""
+    """An estimated end is below rated torque."""
 
     end: Literal["ratchets", "buckles"]
     torque_Nm: float
@@ -77,7 +77,7 @@ GearWarning = (
 
 @dataclass(frozen=True)
 class HalvedBalls:
-    """As many balls as are computed, half of them in each lobe."""
+    """The number of balls that are computed, half of them in each lobe."""
 
     count: int
     computed: int
@@ -92,7 +92,7 @@ class LowRatio:
 
 @dataclass(frozen=True)
 class RelievedFlanks:
-    """Assumed where straight ones come closer again, beyond an angle from the major axis."""
+    """Relief is assumed where straight flanks come closer again, beyond an angle from the major axis."""
 
     from_deg: float
     removed_um: float
@@ -138,7 +138,7 @@ class JointClearances:
 
 @dataclass(frozen=True)
 class FallingStiffness:
-    """A chord's stiffness is by such a share below the one before it; the force without torque, or 0."""
+    """A chord is less stiff than the one before, by this share; the force without torque, or 0."""
 
     lower: str
     higher: str

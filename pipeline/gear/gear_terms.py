@@ -24,12 +24,12 @@ still far above the rounding of an equilibrium."""
 
 
 def small_torque(load_Nm: float, rated_Nm: float) -> float:
-    """At which the gear's gaps are taken [N·m]."""
+    """Return the torque at which the gear's gaps are taken [N·m]."""
     return SMALL * min(load_Nm, rated_Nm)
 
 
 def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str, float]:
-    """Twist [arcsec] by the sum's names: shaft, flexspline, flank_clearance, bearing_play, tight_gear, total.
+    """Return the twist's terms [arcsec]: shaft, flexspline, flank_clearance, bearing_play, tight_gear, total.
 
     `start`: the gear at its `small_torque`. "flexspline" is the wind-up of flexspline, teeth and bearing
     together. A clearance is what the free angle loses when first the flanks', then the bearing's is taken
@@ -62,20 +62,20 @@ def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str,
 
 
 def free_angle(at: Equilibrium) -> float:
-    """Between both flanks [arcsec]: where the tangent at a small torque meets zero; the curve is odd."""
+    """Return the angle between both flanks [arcsec], where the tangent at a small torque meets zero."""
     return 2 * ARCSEC_PER_RAD * (at.rotation - at.slope * at.torque)
 
 
 @dataclass(frozen=True)
 class PlayEffect:
-    """Of the bearing's play on the free angle [arcsec]: all of it, and its last tenth, taken away alone."""
+    """Effect of the bearing's play on the free angle [arcsec]: of all of it, and of its last tenth alone."""
 
     whole: float
     last_tenth: float
 
 
 def play_effect(model: GearModel, start: Equilibrium) -> PlayEffect:
-    """What the play opens while the flanks keep their clearance; `start` and errors as `gear_terms`."""
+    """Return the effect of the play while the flanks keep their clearance; errors as `gear_terms`."""
 
     def with_play(share: float) -> float:
         bearing = replace(model.wave_generator, play=share * model.wave_generator.play)

@@ -9,14 +9,14 @@ from flexspline.pipeline.gear.gear_remarks import BucklingTube, EarlyEnd, GearNo
 
 
 def tube_of(design: Design) -> Tube | None:
-    """The thin wall between diaphragm and ring; None where there is none."""
+    """Return the thin wall between diaphragm and ring; None where there is none."""
     return Tube.between(design.flexspline, Elastic.of(design.material.flexspline))
 
 
 def largest_torques(
     engaged_Nm: float | None, tube: Tube | None, rated_Nm: float
 ) -> tuple[list[GearWarning], list[GearNote]]:
-    """Warnings and notes; `engaged_Nm`: the ratcheting torque. Catalogues': docs/whole-gear.md."""
+    """Return warnings and notes; `engaged_Nm`: the ratcheting torque. Catalogues': docs/whole-gear.md."""
     warned: list[GearWarning] = []
     noted: list[GearNote] = ["no_ratcheting" if engaged_Nm is None else "ratcheting_is_upper"]
     if engaged_Nm is not None and engaged_Nm < rated_Nm:
@@ -36,10 +36,10 @@ def largest_torques(
 
 
 def buckling_torque(tube: Tube | None) -> float | None:
-    """[N·m], two digits: an estimate; None without a tube, or where it yields first."""
+    """Return the estimate [N·m], two digits; None without a tube, or where it yields first."""
     return None if tube is None or tube.yields_first else two_digits(tube.lower_edge_Nm)
 
 
 def two_digits(value: float) -> float:
-    """Of an estimate."""
+    """Return an estimate rounded to two digits."""
     return float(f"{value:.2g}")

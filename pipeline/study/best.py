@@ -22,7 +22,7 @@ class BestField:
 
 
 def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | None:
-    """Of the first design on the front; None without a best, or where it cannot be solved (`say`)."""
+    """Return the field of the first design on the front; None where there is none or it fails (`say`)."""
     if result.scatter or not result.pareto:
         return None
     row = result.pareto[0]

@@ -17,7 +17,7 @@ SMALLEST_SPREAD = 1e-6
 
 
 def check(study: Study) -> None:
-    """Raises StudyError where something cannot be."""
+    """Raise StudyError where the study is impossible."""
     file, method = study.file, study.file.run.method
     for key, span in file.vary.items():
         _check_design_key(study, "vary", key)
@@ -36,8 +36,8 @@ def check(study: Study) -> None:
     for table in ("objective", "constraint"):
         for key in getattr(file, table):
             if key not in FIGURES:
-                said = getattr(file, table)[key] if table == "objective" else {}
-                raise StudyError(f'{table}."{key}"', said, not_a_figure(key))
+                value = getattr(file, table)[key] if table == "objective" else {}
+                raise StudyError(f'{table}."{key}"', value, not_a_figure(key))
             if key == STD_KEY and not _always_stated(study):
                 reason = "needs a standard deviation above 0 in the design's [uncertainty]"
                 raise StudyError(f'{table}."{key}"', {}, reason)

@@ -16,7 +16,7 @@ CLAIM, ROW = "claim", "row"
 
 @dataclass(frozen=True)
 class Claim:
-    """Which design, which attempt at it, by which process."""
+    """A claim: which design, which attempt at it, by which process."""
 
     slot: int
     attempt: int
@@ -47,7 +47,7 @@ class Try:
 
 @dataclass
 class Claims:
-    """What one process knows of a study's trials.
+    """The trials of a study, as far as one process knows them.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Claims:
 
     @property
     def finished(self) -> int:
-        """How many designs have a row."""
+        """Number of designs that have a row."""
         return len(self._rows)
 
     def open(self) -> Iterator[Try]:
@@ -83,15 +83,15 @@ class Claims:
         return [t.trial_id for t in self.open() if t.trial_id not in self.held]
 
     def take_in(self, trials: Iterable[StoredTrial]) -> None:
-        """What the database says of new trials, and of those read again."""
+        """Take in the database's new trials, and those read again."""
         for trial in trials:
             self.last_id = max(self.last_id, trial.trial_id)
             self.last_number = max(self.last_number, trial.number)
             if CLAIM not in trial.attributes:
                 continue
             claim = Claim(**trial.attributes[CLAIM])
-            told = trial.attributes.get(ROW)
-            outcome = outcome_of(told) if told else None
+            row = trial.attributes.get(ROW)
+            outcome = outcome_of(row) if row else None
             if outcome and trial.finished:
                 self.add_row(trial.number, Row(claim.slot, trial.values, outcome))
             else:
@@ -110,7 +110,7 @@ class Claims:
         self.tries.pop(row.slot, None)
 
     def free(self, size: int, dead: Collection[str]) -> Iterator[int]:
-        """Slots below `size` without a row and nobody alive at them; `dead`: owners that are no more.
+        """Return slots below `size` without a row and with nobody alive at them; `dead`: ended owners.
 
         First those that were claimed before, then new ones.
         """

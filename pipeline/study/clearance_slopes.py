@@ -7,11 +7,7 @@ from math import radians, sin
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import MM_PER_UM
-from flexspline.pipeline.backlash import (
-    ARCSEC_PER_RAD,
-    clearance_angle,
-    play_clearance,
-)
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, clearance_angle, play_clearance
 from flexspline.pipeline.bearing_play import involute_clearance_slope
 
 
@@ -33,7 +29,7 @@ class ClearanceSlope:
 
 
 def clearance_slopes(design: Design) -> tuple[ClearanceSlope, ClearanceSlope]:
-    """Of the flank clearance and the bearing play, from the sum's own terms: no stiffness is needed.
+    """Return the slopes of flank clearance and bearing play from the sum's own terms, without a stiffness.
 
     Examples
     --------

@@ -17,7 +17,7 @@ CONNECT_S = 30.0
 
 @dataclass(frozen=True)
 class WorkerPool:
-    """Who evaluates.
+    """Evaluates designs.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class WorkerPool:
 
 
 def check_scheduler(address: str) -> None:
-    """See that a scheduler answers, before anything is written.
+    """Check that a scheduler answers, before anything is written.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def _client_of(address: str) -> Any:
 
 @contextmanager
 def worker_pool(workers: int, scheduler: str) -> Iterator[WorkerPool]:
-    """Local worker processes, one thread each, or a running cluster's workers.
+    """Return local worker processes, one thread each, or a running cluster's workers.
 
     Raises
     ------

@@ -36,7 +36,7 @@ class StorageError(DesignError):
 def open_trial_store(
     url: str, name: str, directions: Sequence[str], sampler: BaseSampler
 ) -> TrialStore:
-    """The study of that name in a database, made if it is not there.
+    """Open the study of that name in a database; it is made if it is not there.
 
     Raises
     ------

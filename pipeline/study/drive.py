@@ -23,31 +23,31 @@ WATCH_SHARE = 0.05
 
 
 class Source(Protocol):
-    """Where designs come from and what their objectives are."""
+    """A source of designs, and what their objectives are."""
 
     @property
     def size(self) -> int:
-        """How many designs the study wants."""
+        """Number of designs that the study wants."""
 
     def ahead(self, width: int) -> int:
-        """How many designs wait for `width` workers, so that none is idle between two designs."""
+        """Return how many designs wait for `width` workers, so that none is idle between two designs."""
 
     def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
-        """At most `count` designs that nobody has, at least one where there is one."""
+        """Claim at most `count` designs that nobody has, at least one where there is one."""
 
     def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
-        """Keep what came out of designs."""
+        """Store the outcomes of designs."""
 
     def task(self, values: Mapping[str, float]) -> Task:
-        """What a worker is to do."""
+        """Return the task for a worker."""
 
     def objectives(self, outcome: Outcome) -> list[float] | None:
-        """What Optuna is told; None for a design that has no figures."""
+        """Return the objectives for Optuna; None for a design that has no figures."""
 
 
 @dataclass(frozen=True)
 class StudyProgress:
-    """How far a study is: all rows, how many came since `seconds` ago, how many are wanted.
+    """The state of a study: all rows, how many came since `seconds` ago, how many are wanted.
 
     Rows of other processes that share the study count too: they shorten the time that is left.
     """
@@ -60,7 +60,7 @@ class StudyProgress:
 
 @dataclass(frozen=True)
 class StudyListener:
-    """Who hears of a study: `watch` how far it is, `say` a line on what is computed beside its designs."""
+    """Hears of a study: `watch` is given its progress, `say` a line on other work than its designs."""
 
     watch: Callable[[StudyProgress], None] = lambda progress: None
     say: Callable[[str], None] = lambda line: None
@@ -76,7 +76,7 @@ def evaluate_all(
     evaluate: Callable[[Task], Outcome],
     watch: Callable[[StudyProgress], None],
 ) -> list[Row]:
-    """Evaluate until every design has a row, whoever made it; the rows by slot.
+    """Evaluate until every design has a row, whoever made it; return the rows by slot.
 
     `watch` hears of finished designs at most every WATCH_S, of what other processes do while it
     waits for them, and of the end. An error that is not ours ends the study: what is finished is stored.
@@ -124,7 +124,7 @@ def is_complete(source: Source, store: TrialStore) -> bool:
 
 
 def within(rows: Sequence[Row], size: int) -> tuple[Row, ...]:
-    """Those of a study of that size: an earlier, longer one may have left others."""
+    """Return the rows of a study of that size: an earlier, longer one may have left others."""
     return tuple(row for row in rows if row.slot < size)
 
 

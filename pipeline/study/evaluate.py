@@ -43,7 +43,7 @@ STUDY_STRESS_TOLERANCE = 1e-2
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker is asked: tables of the design file, values by dotted key, which solves."""
+    """A worker's task: tables of the design file, values by dotted key, and which solves."""
 
     tables: Mapping[str, Any]
     values: Mapping[str, float]
@@ -70,7 +70,7 @@ class Outcome:
 
 
 def outcome_of(stored: Mapping[str, Any]) -> Outcome:
-    """From its `asdict` as JSON, which has no tuples."""
+    """Return an outcome from its `asdict` as JSON, which has no tuples."""
     return Outcome(**{**stored, "faults": tuple(stored["faults"])})
 
 
@@ -82,20 +82,20 @@ def evaluate(task: Task) -> Outcome:
     began = time.perf_counter()
     try:
         design = with_values(design_from(task.tables), task.values)
-        found = figures_of(design, task.solves, task.holes)
+        outcome = figures_of(design, task.solves, task.holes)
     except DesignError as fault:
-        found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
+        outcome = Outcome(faults=tuple(single.alone for single in (fault, *fault.others)))
     except NestingError as fault:
-        found = Outcome(faults=(str(fault),), contradicted=True)
+        outcome = Outcome(faults=(str(fault),), contradicted=True)
     except DESIGN_FAULTS as fault:
-        found = Outcome(faults=(str(fault),))
-    return replace(found, seconds=time.perf_counter() - began)
+        outcome = Outcome(faults=(str(fault),))
+    return replace(outcome, seconds=time.perf_counter() - began)
 
 
 def figures_of(
     design: Design, solves: tuple[Solve, ...], holes: HolesEffect | None = None
 ) -> Outcome:
-    """All figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
+    """Return all figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
 
     A solve that fails leaves the others' figures; its fault names it.
 
@@ -108,55 +108,55 @@ def figures_of(
     in_sum, w0, torque = (
         design.solver.K_b_in_sum, design.w0_mm, design.load.torque_Nm,
     )  # fmt: skip
-    asked: dict[str, Callable[[], Stiffness | StressPeak]] = {}
+    wanted: dict[str, Callable[[], Stiffness | StressPeak]] = {}
     for case in RIM_CASES:
         if case in solves or figure_of(case) == in_sum:
-            asked[figure_of(case)] = partial(CASES[case].fast, flexspline, STUDY_LOBE_WIDTH)
+            wanted[figure_of(case)] = partial(CASES[case].fast, flexspline, STUDY_LOBE_WIDTH)
     if "ellipse" in solves:
-        asked[ON_ELLIPSE] = lambda: ellipse_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
+        wanted[ON_ELLIPSE] = lambda: ellipse_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
     if "half_seat" in solves:
-        asked[ON_HALF_SEAT] = lambda: half_seat_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
+        wanted[ON_HALF_SEAT] = lambda: half_seat_peak(flexspline, w0, STUDY_STRESS_TOLERANCE)
     if "torque" in solves:
-        asked["torque_peak"] = lambda: torque_peak(flexspline, torque, STUDY_STRESS_TOLERANCE)
-        asked["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STUDY_STRESS_TOLERANCE)
+        wanted["torque_peak"] = lambda: torque_peak(flexspline, torque, STUDY_STRESS_TOLERANCE)
+        wanted["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STUDY_STRESS_TOLERANCE)
     if "torsion" in solves:
-        asked["K_b"] = lambda: stiffness(design, "flexspline", STUDY_TORSION_WIDTH)
-        asked["K_e"] = lambda: fast_K_e(design)
-    found: dict[str, float] = {}
+        wanted["K_b"] = lambda: stiffness(design, "flexspline", STUDY_TORSION_WIDTH)
+        wanted["K_e"] = lambda: fast_K_e(design)
+    figures: dict[str, float] = {}
     missing: dict[str, str] = {}
-    for name, solve in asked.items():
+    for name, solve in wanted.items():
         try:
-            found |= _figures(name, solve())
+            figures |= _figures(name, solve())
         except DESIGN_FAULTS as fault:
             missing[name] = str(fault)
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
-            found = with_holes(found, design, holes)
+            figures = with_holes(figures, design, holes)
         if "gear" in solves and "K_e" not in missing:
             try:
-                found |= _gear(design, found["K_e_Nm_per_rad"])
+                figures |= _gear(design, figures["K_e_Nm_per_rad"])
             except DESIGN_FAULTS as fault:
                 missing["gear"] = str(fault)
         if not {in_sum, "K_e"} & set(missing):
             try:
-                found |= _sum(design, found)
+                figures |= _sum(design, figures)
             except DESIGN_FAULTS as fault:
                 missing["backlash_arcsec"] = str(fault)
     mass = masses(design)
     sizes = (
         mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
     )  # fmt: skip
-    found |= dict(zip(SIZES, sizes, strict=True))
-    return Outcome(found, tuple(f"{name}: {why}" for name, why in missing.items()))
+    figures |= dict(zip(SIZES, sizes, strict=True))
+    return Outcome(figures, tuple(f"{name}: {why}" for name, why in missing.items()))
 
 
 def fast_K_e(design: Design) -> Stiffness:
-    """Of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
+    """Return K_e of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
     return stiffness(design, "shaft", STUDY_TORSION_WIDTH)
 
 
-def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
-    K_b, K_e = found[f"{design.solver.K_b_in_sum}_Nm_per_rad"], found["K_e_Nm_per_rad"]
+def _sum(design: Design, figures: Mapping[str, float]) -> dict[str, float]:
+    K_b, K_e = figures[f"{design.solver.K_b_in_sum}_Nm_per_rad"], figures["K_e_Nm_per_rad"]
     total = backlash(design, K_b, K_e)
     sums = {**total.terms_arcsec, "total": total.total_arcsec}
     if total.std_arcsec is not None:
@@ -172,14 +172,14 @@ def _gear(design: Design, K_e_Nm_per_rad: float) -> dict[str, float]:
     return {key: float(getattr(curve, key)) for key in GIVEN_BY["gear"]}
 
 
-def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:
+def _figures(name: str, solved: Stiffness | StressPeak) -> dict[str, float]:
     """A stiffness, its bounds, and 1 where these are theorems, else 0; or a peak, and 1 where it lies at
     the excluded border, else 0."""
-    if isinstance(found, StressPeak):
-        peak = settled_peak(found)
+    if isinstance(solved, StressPeak):
+        peak = settled_peak(solved)
         return {
             f"{name}_mises_MPa": peak.mises_MPa,
             f"{name}_at_excluded_border": float(peak.at_excluded_border),
         }
-    guaranteed = {f"{name}_bounds_guaranteed": float(found.guaranteed)}
-    return stiffness_figures(name, found) | guaranteed
+    guaranteed = {f"{name}_bounds_guaranteed": float(solved.guaranteed)}
+    return stiffness_figures(name, solved) | guaranteed

@@ -15,14 +15,14 @@ Solve = Literal["torsion", "ellipse", "half_seat", "torque", "gear"] | RimCase
 
 
 def stiffness_keys(name: str) -> tuple[str, str, str]:
-    """Of a stiffness and of both its bounds, by its name, such as "K_b"."""
+    """Return the keys of a stiffness and both its bounds, by its name, such as "K_b"."""
     bounds = f"{name}_bounds_Nm_per_rad"
     return f"{name}_Nm_per_rad", f"{bounds}[0]", f"{bounds}[1]"
 
 
-def stiffness_figures(name: str, found: Stiffness) -> dict[str, float]:
-    """A stiffness and both its bounds, by their keys."""
-    values = found.K_Nm_per_rad, *found.bounds_Nm_per_rad
+def stiffness_figures(name: str, K: Stiffness) -> dict[str, float]:
+    """Return a stiffness and both its bounds, by their keys."""
+    values = K.K_Nm_per_rad, *K.bounds_Nm_per_rad
     return dict(zip(stiffness_keys(name), values, strict=True))
 
 
@@ -56,14 +56,14 @@ USUAL_FIGURES = ("K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", TOTAL)
 """What a study without objective and constraint looks at."""
 
 
-def needed(asked: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
-    """The solves that give the figures asked for, beside the usual ones."""
-    wanted = set(asked)
+def needed(figures: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
+    """Return the solves that give the figures asked for, beside the usual ones."""
+    wanted = set(figures)
     return tuple(s for s, keys in GIVEN_BY.items() if s in usual or wanted & set(keys))
 
 
 def not_a_figure(key: str) -> str:
-    """Why a key is refused: the nearest known one, or all of them."""
+    """Return why a key is refused: the nearest known one, or all of them."""
     begins = [figure for figure in FIGURES if key and figure.startswith(key)]
     if near := begins[0] if begins else nearest_key(key, FIGURES):
         return f"unknown figure; did you mean {near}?"

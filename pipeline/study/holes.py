@@ -44,7 +44,7 @@ class UnknownEffect:
 
 @dataclass(frozen=True)
 class HolesEffect:
-    """What the nominal design's holes and keyway do to its K_e.
+    """The effect of the nominal design's holes and keyway on its K_e.
 
     Attributes
     ----------
@@ -58,13 +58,13 @@ class HolesEffect:
     drift: float
 
     def factor(self, design: Design, K_e_Nm_per_rad: float) -> tuple[float, float]:
-        """K_e with holes over `K_e_Nm_per_rad` without, and how far that may be off."""
+        """Return K_e with holes over `K_e_Nm_per_rad` without, and its possible error."""
         value = 1 / (1 + self.share * cut_compliance(design) * K_e_Nm_per_rad)
         return value, self.doubt + self.drift * (1 - value)
 
 
 def cut_compliance(design: Design) -> float:
-    """L/(G·J) of the pieces of the shaft that holes and keyway cut, as if they did not [rad/(N·m)].
+    """Return L/(G·J) of the shaft's pieces with holes and keyway, as if uncut [rad/(N·m)].
 
     Source: torsion of a round tube.
     """
@@ -85,25 +85,27 @@ def pierced(design: Design) -> bool:
 
 
 def unfollowed(keys: Iterable[str]) -> tuple[str, ...]:
-    """Those of some design keys that the fast model's shaft lacks: its holes and its keyway."""
+    """Return those design keys that the fast model's shaft lacks: its holes and its keyway."""
     of_shaft = (k for k in keys if k.startswith("shaft."))
     return tuple(k for k in of_shaft if k.endswith(("bolt_count", *HOLES)) or ".keyway." in k)
 
 
 def drifts(keys: Iterable[str]) -> bool:
-    """Whether some of the design keys move the ratio: the shaft's dimensions or Poisson's ratio."""
+    """Whether some of the design keys change the ratio: the shaft's dimensions or Poisson's ratio."""
     return any(k.startswith("shaft.") or k.endswith(".poissons_ratio") for k in keys)
 
 
-def with_holes(found: Mapping[str, float], design: Design, effect: HolesEffect) -> dict[str, float]:
-    """Figures with K_e and its bounds corrected, and the factor beside them."""
+def with_holes(
+    solved: Mapping[str, float], design: Design, effect: HolesEffect
+) -> dict[str, float]:
+    """Return the figures with K_e and its bounds corrected, and the factor beside them."""
     K, low, high = stiffness_keys("K_e")
-    value, doubt = effect.factor(design, found[K])
+    value, doubt = effect.factor(design, solved[K])
     return {
-        **found,
-        K: found[K] * value,
-        low: found[low] * (value - doubt),
-        high: found[high] * (value + doubt),
+        **solved,
+        K: solved[K] * value,
+        low: solved[low] * (value - doubt),
+        high: solved[high] * (value + doubt),
         "K_e_bounds_guaranteed": 0.0,
         "K_e_holes_factor": value,
     }
@@ -115,7 +117,7 @@ def holes_of(
     say: Callable[[str], None],
     drift: float = HOLE_EFFECT_DRIFT,
 ) -> HolesEffect | UnknownEffect | None:
-    """That of a nominal design; `K_e` is the fast model's, without the holes.
+    """Return the effect for a nominal design; `K_e` is the fast model's, without the holes.
 
     `drift`: share of the holes' effect, as HOLE_EFFECT_DRIFT; 0 where the study leaves the shaft as it is.
     None where the shaft has none.

@@ -42,19 +42,19 @@ class Indices:
         )
 
     @property
-    def told(self) -> bool:
+    def is_known(self) -> bool:
         """Whether every index is known well enough to be shown."""
         return self.widest <= WIDEST_INTERVAL
 
 
 def groups_of(blocks: int) -> list[slice]:
-    """Consecutive sample blocks in at most MOST_GROUPS groups."""
+    """Return consecutive sample blocks in at most MOST_GROUPS groups."""
     ends = np.linspace(0, blocks, min(blocks, MOST_GROUPS) + 1).astype(int)
     return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
 
 def reach(left_out: np.ndarray) -> np.ndarray:
-    """Half the CONFIDENCE interval of a figure from its values with one group of G left out, (G, …).
+    """Return half the CONFIDENCE interval of a figure from its values with one group of G left out, (G, …).
 
     The jackknife's standard deviation (Efron and Stein, Ann. Statist. 9, 1981, 586-596: on average too
     large, never too small) times Student's factor for G − 1.
@@ -65,14 +65,14 @@ def reach(left_out: np.ndarray) -> np.ndarray:
 
 
 def students_factor(freedom: int) -> float:
-    """How many standard deviations hold CONFIDENCE."""
+    """Return how many standard deviations hold CONFIDENCE."""
     from scipy.stats import t
 
     return float(t.ppf((1 + CONFIDENCE) / 2, freedom))
 
 
 def within(low: np.ndarray, value: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Ends (k, 2) of intervals about values, at least HALF_DIGIT to either side, none beyond [0, 1]."""
+    """Return interval ends (k, 2) about values, at least HALF_DIGIT to either side, none beyond [0, 1]."""
     ends = np.column_stack(
         [np.minimum(low, value - HALF_DIGIT), np.maximum(high, value + HALF_DIGIT)]
     )
@@ -80,7 +80,7 @@ def within(low: np.ndarray, value: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def sampled_indices(blocks: np.ndarray) -> tuple[Indices, float]:
-    """From values (N, k + 2) at the points of Saltelli's scheme, and the largest ± before the ends 0 and 1.
+    """Return indices from values (N, k + 2) at Saltelli's points, and the largest ± before the ends 0 and 1.
 
     First order by Saltelli's estimator b(ab_i − a), total by Jansen's (a − ab_i)²/2, both about the mean.
     """

@@ -42,7 +42,7 @@ class OpenEnd:
 
 
 def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
-    """What moves each figure looked at, over all designs built, the strongest first.
+    """Return the keys that move each figure, over all designs built, the strongest first.
 
     Nothing of a tolerance study, whose indices say it, and of few designs. An optimiser's designs move
     several dimensions together, and few designs agree by chance: what is no influence of the dimension itself
@@ -53,30 +53,30 @@ def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
         return {}
     values = {key: np.array([r.values[key] for r in rows]) for key in result.study.file.vary}
     moved = {key: x for key, x in values.items() if np.ptp(x) > 0}
-    found = {}
+    influences = {}
     for figure in result.shown:
         y = np.array([r.outcome.figures[figure] for r in rows])
-        own = [
+        of_figure = [
             Influence(key, _spearman(x, y))
             for key, x in moved.items()
             if np.ptp(y) > 0
             and _is_its_own(x, y, [moved[other] for other in moved if other != key])
         ]
-        found[figure] = tuple(sorted(own, key=lambda i: -abs(i.correlation)))
-    return found
+        influences[figure] = tuple(sorted(of_figure, key=lambda i: -abs(i.correlation)))
+    return influences
 
 
 def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
-    """Ends of spans at which the best design lies, though it would gain beyond them.
+    """Return the ends of spans at which the best design lies, though it would gain beyond them.
 
     A key of one value has no span, and one that only one built design has tells nothing.
     """
-    found: list[OpenEnd] = []
+    open_at: list[OpenEnd] = []
     for key, (low, high) in _spans(result).items():
         ends = (OpenEnd(key, low, "lower"), OpenEnd(key, high, "upper"))
         near = (e for e in ends if abs(best.values[key] - e.value) <= END_SHARE * (high - low))
-        found += [e for e in near if _may_help(result, best, key, 1 if e.value == high else -1)]
-    return tuple(found)
+        open_at += [e for e in near if _may_help(result, best, key, 1 if e.value == high else -1)]
+    return tuple(open_at)
 
 
 def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
@@ -91,21 +91,21 @@ def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
 
 
 def unbuilt_neighbours(result: StudyResult, best: Row) -> tuple[tuple[str, float], ...]:
-    """Keys and their values next to the best design's in a grid that gave no design, all else alike.
+    """Return keys and values next to the best design's in a grid that gave no design, all else alike.
 
     Without those towards which the objective is seen to get worse.
     """
     if result.study.file.run.method != "grid":
         return ()
-    found: list[tuple[str, float]] = []
+    neighbours: list[tuple[str, float]] = []
     for key in _spans(result):
         for outward in (-1, 1):
             near, opposite = (_next(result.rows, best, key, way) for way in (outward, -outward))
             if near is None or near in result.built:
                 continue
             if opposite not in result.built or not result.is_better(opposite, best):
-                found.append((key, near.values[key]))
-    return tuple(found)
+                neighbours.append((key, near.values[key]))
+    return tuple(neighbours)
 
 
 def _spans(result: StudyResult) -> dict[str, tuple[float, float]]:
@@ -165,12 +165,12 @@ def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
         return False
     beside = np.column_stack([np.ones(len(x)), *map(rankdata, others)])
     ranks = np.column_stack([rankdata(x), rankdata(y)])
-    own = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
-    size = np.linalg.norm(own, axis=0)
+    residuals = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
+    size = np.linalg.norm(residuals, axis=0)
     # else the others stand for one of them
     if not (size > RANK_ROUNDING * np.linalg.norm(ranks, axis=0)).all():
         return True
-    rho = float(own[:, 0] @ own[:, 1] / size.prod())
+    rho = float(residuals[:, 0] @ residuals[:, 1] / size.prod())
     chance = t.isf(BY_CHANCE / 2, free)
     return abs(rho) > chance / np.sqrt(free + chance**2)
 

@@ -34,7 +34,7 @@ def load_study(path: Path) -> Study:
 
 
 def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
-    """A checked Study from the tables of a study file; the design's path is relative to `folder`."""
+    """Return a checked Study from the tables of a study file; the design's path is relative to `folder`."""
     try:
         file = StudyFile.model_validate(data)
     except ValidationError as fault:

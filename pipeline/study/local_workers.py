@@ -60,7 +60,7 @@ class LocalWorkers(Executor):
             thread.start()
 
     def submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """The future of `fn(*args, **kwargs)`; `fn` must be importable by its name."""
+        """Return the future of `fn(*args, **kwargs)`; `fn` must be importable by its name."""
         future: Future[Any] = Future()
         self._calls.put((future, pickle.dumps((partial(fn, **kwargs), args))))
         return future
@@ -111,8 +111,8 @@ class _WorkerProcess:
             calls, answers = self._pipes()
             with suppress(OSError):  # nobody reads any more
                 write_frame(calls, call)
-                if (said := read_frame(answers)) is not None:
-                    return said
+                if (reply := read_frame(answers)) is not None:
+                    return reply
             self.end()
         raise WorkerDiedError(WORKER_DIED)
 

@@ -18,14 +18,14 @@ ROOT_ROUNDING = 1e-9
 
 
 class StudyPlan(Protocol):
-    """Values of design `index`, the same whoever asks and whenever."""
+    """A plan gives values of design `index`, the same whoever asks and whenever."""
 
     @property
     def size(self) -> int:
-        """How many designs."""
+        """Number of designs."""
 
     def point(self, index: int) -> Values:
-        """Values by varied key."""
+        """Return the values by varied key."""
 
 
 @dataclass(frozen=True)
@@ -62,19 +62,19 @@ class GridPlan:
 
 
 def grid(study: Study) -> GridPlan:
-    """`values` and `steps` as given; other spans share `evaluations` evenly, at least two each."""
+    """Return a grid of `values` and `steps` as given; other spans share `evaluations`, at least two each."""
     spans, budget = study.file.vary, study.file.run.evaluations
     fixed = {k: len(s.values) if s.values else s.steps for k, s in spans.items()}
     taken = int(np.prod([n for n in fixed.values() if n] or [1]))
     open_keys = [k for k, n in fixed.items() if not n]
     share = (budget / taken) ** (1 / len(open_keys)) if open_keys else 0.0
-    each = max(2, int(share + ROOT_ROUNDING))
+    steps = max(2, int(share + ROOT_ROUNDING))
     axes: dict[str, list[float]] = {}
     for key, span in spans.items():
         if span.values is not None:
             axes[key] = list(span.values)
             continue
-        axis = np.linspace(*span.ends, span.steps or each)
+        axis = np.linspace(*span.ends, span.steps or steps)
         if key in study.whole:
             axis = np.unique(np.round(axis))
         axes[key] = [float(plain_number(v)) for v in axis]
@@ -107,7 +107,7 @@ class Sobol:
 
 
 def from_unit(study: Study, key: str, u: float) -> float:
-    """A number in [0, 1) spread over a key's span."""
+    """Spread a number in [0, 1) over a key's span."""
     span = study.file.vary[key]
     if span.values is not None:
         return span.values[min(int(u * len(span.values)), len(span.values) - 1)]
@@ -119,6 +119,6 @@ def from_unit(study: Study, key: str, u: float) -> float:
 
 
 def linked(study: Study, values: Values) -> dict[str, float]:
-    """With the keys of [link] that follow the varied ones."""
+    """Add the keys of [link] that follow the varied ones."""
     follow = {k: link.times * values[link.of] + link.plus for k, link in study.file.link.items()}
     return {**values, **follow}

@@ -49,7 +49,7 @@ def polish_of(
     sense: str,
     excesses: Callable[[FrozenTrial], Sequence[float]],
 ) -> Polish | None:
-    """The next design's step; None where the sampler is to suggest it.
+    """Return the next design's step; None where the sampler is to suggest it.
 
     While none keeps to all constraints, the best is the one that oversteps them least.
     """
@@ -72,20 +72,20 @@ def polish_of(
 
 
 def near(polish: Polish, random: np.random.Generator) -> dict[str, Any]:
-    """Values a step away from the best, kept within the spans by reflection."""
+    """Return values a step away from the best, kept within the spans by reflection."""
     from optuna.distributions import CategoricalDistribution, IntDistribution
 
     best, step = polish.best, polish.step
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, over in best.distributions.items():
         value = best.params[key]
         if isinstance(over, CategoricalDistribution):
             redrawn = random.random() < CHANGES
-            found[key] = over.choices[random.integers(len(over.choices))] if redrawn else value
+            values[key] = over.choices[random.integers(len(over.choices))] if redrawn else value
             continue
         low, high = float(over.low), float(over.high)  # type: ignore[attr-defined]
         moved = value + step * (high - low) * random.standard_normal()
         moved = high - abs(high - (low + abs(moved - low)))
         moved = float(np.clip(moved, low, high))
-        found[key] = round(moved) if isinstance(over, IntDistribution) else moved
-    return found
+        values[key] = round(moved) if isinstance(over, IntDistribution) else moved
+    return values

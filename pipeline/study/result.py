@@ -40,7 +40,7 @@ class StudyResult:
         return self.study.file.run.method == "tolerance"
 
     def design_of(self, row: Row) -> Design:
-        """The whole design of a row."""
+        """Return the whole design of a row."""
         return with_values(self.study.design, linked(self.study, row.values))
 
     @property
@@ -51,7 +51,7 @@ class StudyResult:
 
     @property
     def nearest(self) -> Row | None:
-        """The row with figures that oversteps the constraints least, by shares of their limits."""
+        """Return the row that oversteps the constraints least, by shares of their limits."""
         limits = self.study.file.constraint
 
         def overstep(row: Row) -> float:

@@ -44,7 +44,7 @@ HOLES_NOTE = "holes"
 
 
 def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
-    """Where a study's designs come from, and what corrects their K_e for holes."""
+    """Return the source of a study's designs, and the correction of their K_e for holes."""
     if study.file.run.method == "tolerance":
         return scattered(study, holes)
     solves = solves_of(study, USUAL_SOLVES)
@@ -57,19 +57,19 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
 def nominal_holes(
     study: Study, store: TrialStore, say: Callable[[str], None]
 ) -> HolesEffect | UnknownEffect | None:
-    """What the shaft's holes and keyway do to K_e of the design that the study begins with.
+    """Return the effect of the shaft's holes and keyway on K_e of the design that the study begins with.
 
     Kept with the study's trials: every row has the same share, whoever makes it and when. What time or memory
     was too short for is looked for again, until a design is begun without it.
     """
     stored = store.notes().get(HOLES_NOTE)
     if _is_sought(stored, store):
-        found = holes_of(
+        effect = holes_of(
             study.design, fast_K_e, say, HOLE_EFFECT_DRIFT if drifts(study.keys) else 0.0
         )
         stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
         if _is_sought(stored, store):
-            stored = asdict(found) if found else {}
+            stored = asdict(effect) if effect else {}
             store.note(HOLES_NOTE, stored)
     if not stored:
         return None
@@ -82,7 +82,7 @@ def _is_sought(stored: Mapping[str, Any] | None, store: TrialStore) -> bool:
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:
-    """The study's trials in its storage, `study.db` in `folder` where none is named.
+    """Open the study's trials in its storage, `study.db` in `folder` where none is named.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
     TrialStoreError : `study.db` cannot.
     """
     url = study.file.run.storage
-    own = folder / "study.db"
+    database = folder / "study.db"
     if not url:
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -101,12 +101,12 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
             ) from None
     directions = list(study.file.objective.values()) or ["minimize"]
     try:
-        given = url or f"sqlite:///{own.resolve()}"
+        given = url or f"sqlite:///{database.resolve()}"
         return open_trial_store(given, study_name(study), directions, sampler_of(study))
     except StorageError as fault:
         if url:
             raise
-        raise TrialStoreError(f"{own}: {fault.cause}", helps(fault)) from fault
+        raise TrialStoreError(f"{database}: {fault.cause}", helps(fault)) from fault
 
 
 def whole_study(
@@ -114,17 +114,17 @@ def whole_study(
     store: TrialStore,
     listener: StudyListener = NOBODY,
 ) -> StudyResult:
-    """`run_study` with the workers that the study asks for, its K_e corrected for holes.
+    """Run the study with the workers that it asks for, its K_e corrected for holes.
 
     Where it found a best design, the figures of the design that it began with stand beside it.
     """
     run = study.file.run
     pool = partial(worker_pool, run.workers, run.scheduler)
-    found = nominal_holes(study, store, listener.say)
-    holes = found if isinstance(found, HolesEffect) else None
+    effect = nominal_holes(study, store, listener.say)
+    holes = effect if isinstance(effect, HolesEffect) else None
     result = run_study(study, store, pool, listener=listener, holes=holes)
-    if isinstance(found, UnknownEffect):
-        result = replace(result, no_holes_effect=found.reason)
+    if isinstance(effect, UnknownEffect):
+        result = replace(result, no_holes_effect=effect.reason)
     if result.about_scatter or not result.pareto:
         return result
     return replace(result, start=start_outcome(study, store, holes))
@@ -164,7 +164,7 @@ def _scattered(result: StudyResult, source: Source) -> StudyResult:
         return result
     seed, keys = result.study.file.run.seed, result.study.outputs
     try:
-        found = tuple(scatter_of(k, source.inputs, result.rows, seed) for k in keys)
+        scatters = tuple(scatter_of(k, source.inputs, result.rows, seed) for k in keys)
     except ScatterError as fault:
         return replace(result, unscattered=str(fault))
-    return replace(result, scatter=found)
+    return replace(result, scatter=scatters)

@@ -29,7 +29,7 @@ STARTUP = 10
 
 
 def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
-    """How far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
+    """Return how far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
     return [
         limit.excess(figures[k]) / limit.size if k in figures else 1.0
         for k, limit in study.file.constraint.items()
@@ -37,7 +37,7 @@ def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
 
 
 def start_in_spans(study: Study) -> Values:
-    """The values that the study begins with; none where a varied key has none within its span."""
+    """Return the values that the study begins with; none where a varied key has none within its span."""
     values = study.start_values
     for key, span in study.file.vary.items():
         low, high = span.ends
@@ -48,15 +48,15 @@ def start_in_spans(study: Study) -> Values:
 
 
 def sampler_of(study: Study) -> BaseSampler:
-    """TPE for one objective, its best polished towards the end; NSGA-II for several."""
+    """Return TPE for one objective, with the best polished towards the end; NSGA-II for several."""
     from optuna.samplers import BaseSampler, NSGAIISampler, TPESampler
 
     file = study.file
 
-    def told(trial: FrozenTrial) -> Sequence[float]:
+    def constraint_values(trial: FrozenTrial) -> Sequence[float]:
         return excesses(study, trial.user_attrs.get(ROW, {}).get("figures") or {})
 
-    constraints = told if file.constraint else None
+    constraints = constraint_values if file.constraint else None
 
     def fresh(seed: int) -> BaseSampler:
         with warnings.catch_warnings():
@@ -75,7 +75,7 @@ def sampler_of(study: Study) -> BaseSampler:
         words = [file.run.seed, trial.number, *more]
         return int(np.random.SeedSequence(words).generate_state(1)[0])
 
-    own = start_in_spans(study)
+    start = start_in_spans(study)
 
     class Seeded(BaseSampler):
         """Delegates to a sampler seeded for the trial; the first is the study's own design."""
@@ -87,14 +87,14 @@ def sampler_of(study: Study) -> BaseSampler:
             past = study.get_trials(deepcopy=False)
             if len(file.objective) == 1:
                 sense = next(iter(file.objective.values()))
-                polish = polish_of(past, file.run.evaluations, sense, told)
+                polish = polish_of(past, file.run.evaluations, sense, constraint_values)
                 if polish is not None:
                     return near(polish, np.random.default_rng(seed_of(trial, 1)))
             return fresh(seed_of(trial)).sample_relative(study, trial, search_space)
 
         def sample_independent(self, study: Any, trial: FrozenTrial, name: str, over: Any) -> Any:
-            if trial.number == 0 and name in own:
-                return own[name]
+            if trial.number == 0 and name in start:
+                return start[name]
             # one stream per key, or keys of equal spans would get equal numbers
             seed = seed_of(trial, *name.encode())
             return fresh(seed).sample_independent(study, trial, name, over)

@@ -48,7 +48,7 @@ class Tightened:
 
 @dataclass(frozen=True)
 class Attribution:
-    """What share of the variance is whose.
+    """Shares of the variance by input.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class Scatter:
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Inputs, the most important first; as they come where nobody knows."""
+        """Inputs, the most important first; in their own order where the indices are not known."""
         if self.indices is None:
             return tuple(range(len(self.inputs)))
         total = self.indices.total
@@ -116,7 +116,7 @@ class Scatter:
 def scatter_of(
     key: str, inputs: tuple[ScatteredInput, ...], rows: tuple[Row, ...], seed: int
 ) -> Scatter:
-    """From the rows of a whole tolerance study, in order.
+    """Return a figure's scatter from the rows of a whole tolerance study, in order.
 
     Raises
     ------
@@ -136,35 +136,35 @@ def scatter_of(
         same = float(independent.mean())
         return Scatter(key, inputs, independent, independent, same, same, dropped=dropped)
 
-    found = attributed(inputs, points, values)
-    if found.surface is None:
+    attribution = attributed(inputs, points, values)
+    if attribution.surface is None:
         return Scatter(
-            key, inputs, independent, independent, *_ends(independent), found, (), dropped
+            key, inputs, independent, independent, *_ends(independent), attribution, (), dropped
         )  # fmt: skip
-    cloud = Cloud(found.surface, seed)
+    cloud = Cloud(attribution.surface, seed)
     drawn = cloud.values(inputs)
     return Scatter(
-        key, inputs, independent, drawn, *_ends(drawn), found, tightening(cloud), dropped
+        key, inputs, independent, drawn, *_ends(drawn), attribution, tightening(cloud), dropped
     )
 
 
 def attributed(
     inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray
 ) -> Attribution:
-    """Shares of the variance from points (n, k) and values (n,) of Saltelli's scheme, nan where unsolved."""
+    """Return shares of the variance from points (n, k) and values (n,), nan where unsolved (Saltelli)."""
     k = len(inputs)
     blocks, solved = values.reshape(-1, k + 2), np.isfinite(values)
     block = np.repeat(np.arange(len(blocks)), k + 2)
     surface = surface_through(inputs, points[solved], values[solved], block[solved])
     explained = surface.explained if surface else None
-    if surface and (found := surface.indices()).told:
-        return Attribution(found, surface, explained)
+    if surface and (indices := surface.indices()).is_known:
+        return Attribution(indices, surface, explained)
     whole = blocks[np.isfinite(blocks).all(axis=1)]
     if len(whole) < LEAST_BLOCKS or np.ptp(whole[:, [0, -1]]) == 0:
         return Attribution(explained=explained)
-    found, half = sampled_indices(whole)
+    indices, half = sampled_indices(whole)
     if half <= WIDEST_INTERVAL:
-        return Attribution(found, explained=explained)
+        return Attribution(indices, explained=explained)
     more = np.ceil(np.log2(len(blocks) * (half / WIDEST_INTERVAL) ** 2))
     return Attribution(explained=explained, enough=int(2**more) * (k + 2))
 
@@ -184,27 +184,27 @@ class Cloud:
         self._errors = np.random.default_rng(seed).permutation(dealt)
 
     def values(self, inputs: tuple[ScatteredInput, ...]) -> np.ndarray:
-        """The figure for inputs that scatter less than the surface's own, or as they do."""
+        """Return the figure for inputs that scatter less than the surface's own, or as much."""
         x = np.column_stack([i.at(u) for i, u in zip(inputs, self._unit.T, strict=True)])
         return np.asarray(self.surface.at(x) + self._errors)
 
     def ends(self, inputs: tuple[ScatteredInput, ...]) -> tuple[float, float]:
-        """Of the 95 % range."""
+        """Return the ends of the 95 % range."""
         return _ends(self.values(inputs))
 
 
 def tightening(cloud: Cloud) -> tuple[Tightened, ...]:
-    """What every input's tightening buys of the 95 % range."""
+    """Return how much narrower the 95 % range becomes if an input is tightened, for each input."""
     inputs = cloud.surface.inputs
     now = float(np.ptp(cloud.ends(inputs)))
-    found = []
-    for i, own in enumerate(inputs):
+    gains = []
+    for i, scattered in enumerate(inputs):
         for factor in TIGHTENING_FACTORS:
             width = float(
-                np.ptp(cloud.ends((*inputs[:i], own.tightened(factor), *inputs[i + 1 :])))
+                np.ptp(cloud.ends((*inputs[:i], scattered.tightened(factor), *inputs[i + 1 :])))
             )
-            found.append(Tightened(own.key, factor, width, now - width))
-    return tuple(found)
+            gains.append(Tightened(scattered.key, factor, width, now - width))
+    return tuple(gains)
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:

@@ -45,14 +45,14 @@ class Link(_Frozen):
 
 
 class Limit(_Frozen):
-    """What a figure must keep to, either end included."""
+    """Limits of a figure, either end included."""
 
     min: Number | None = None
     max: Number | None = None
 
     @property
     def size(self) -> float:
-        """Of its limits: what an excess is compared with."""
+        """Size of the limits, with which an excess is compared."""
         size = max(abs(x) for x in (self.min, self.max) if x is not None)
         return size if size > 1 / LARGEST_NUMBER else 1.0
 
@@ -64,14 +64,14 @@ class Limit(_Frozen):
         )
 
     def excess(self, value: float) -> float:
-        """How far outside, at most 0 inside; in the figure's unit."""
+        """Return how far a value is outside, at most 0 inside; in the figure's unit."""
         over = [value - self.max] if self.max is not None else []
         under = [self.min - value] if self.min is not None else []
         return max([*over, *under])
 
 
 class Spread(_Frozen):
-    """What a number may be off by: uniform within ± `plus_minus`, or normal with `std`."""
+    """Scatter of a number: uniform within ± `plus_minus`, or normal with `std`."""
 
     plus_minus: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     std: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
@@ -148,7 +148,7 @@ KEYS: dict[str, tuple[str, ...]] = {
 
 
 def pattern(location: tuple[Any, ...]) -> str:
-    """A location of pydantic's as a key of WORDS: ("vary", "a.b", "min") → "vary.*.min"."""
+    """Return a location of pydantic's as a key of WORDS: ("vary", "a.b", "min") → "vary.*.min"."""
     parts = [str(p) for p in location if not isinstance(p, int)]
     if len(parts) > 1 and parts[0] != "run":
         parts[1] = "*"

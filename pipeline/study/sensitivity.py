@@ -12,7 +12,7 @@ from flexspline.pipeline.study.slope import Slope, Slopes
 
 
 def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ...]:
-    """Of every length above 0 of both parts, the strongest first within a part.
+    """Return dK/dp of every length above 0 of both parts, the strongest first within a part.
 
     `say` is told the cache's faults, each dimension that is solved, and those that have no slope.
 
@@ -29,15 +29,15 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
         return slopes(design, say)
 
     # all of the design, as every key has a say in which steps can be built; its name has none
-    asked = without_holes(design).model_dump(mode="json", exclude={"name"})
-    kept, _ = cache.get("slopes by load case", {"design": asked}, solve, _is_lasting)
+    tables = without_holes(design).model_dump(mode="json", exclude={"name"})
+    kept, _ = cache.get("slopes by dimension", {"design": tables}, solve, _is_lasting)
     for key, why in kept.missing.items():
         say(f"no dK/dp of {key}: {why}")
-    return kept.found
+    return kept.slopes
 
 
 def _is_lasting(kept: Slopes) -> bool:
     """Whether more time or memory would have found no more."""
-    found = (why for s in kept.found for why in (s.why, s.why_no_sum))
-    reasons = (*found, *kept.missing.values())
+    of_slopes = (why for s in kept.slopes for why in (s.why, s.why_no_sum))
+    reasons = (*of_slopes, *kept.missing.values())
     return not any(why.of_the_machine for why in reasons)

@@ -41,7 +41,7 @@ class Slope:
 
     @property
     def best(self) -> float:
-        """The held one where there is one."""
+        """The slope with the field held, where there is one, else the other."""
         return self.held if self.held is not None else (self.solved or 0.0)
 
     @property
@@ -60,7 +60,7 @@ class Slope:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Of one design; `missing`: why a dimension has none, by its key."""
+    """The slopes of one design; `missing`: why a dimension has none, by its key."""
 
-    found: tuple[Slope, ...]
+    slopes: tuple[Slope, ...]
     missing: Mapping[str, Shortfall]

@@ -128,35 +128,31 @@ class SampledDesigns(_Asked):
 
 
 def solves_of(study: Study, usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
-    """What every design of a study is solved for."""
+    """Return the solves of every design of a study."""
     return needed({**study.file.objective, **study.file.constraint}, usual)
 
 
 def distributions(study: Study) -> dict[str, BaseDistribution]:
-    """Optuna's words for [vary]."""
-    from optuna.distributions import (
-        CategoricalDistribution,
-        FloatDistribution,
-        IntDistribution,
-    )
+    """Return Optuna's distributions of [vary]."""
+    from optuna.distributions import CategoricalDistribution, FloatDistribution, IntDistribution
 
-    found: dict[str, BaseDistribution] = {}
+    of_keys: dict[str, BaseDistribution] = {}
     for key, span in study.file.vary.items():
         if span.values is not None:
-            found[key] = CategoricalDistribution(span.values)
+            of_keys[key] = CategoricalDistribution(span.values)
         elif key in study.whole:
             low, high = span.ends
-            found[key] = IntDistribution(int(low), int(high))
+            of_keys[key] = IntDistribution(int(low), int(high))
         else:
-            found[key] = FloatDistribution(*span.ends)
-    return found
+            of_keys[key] = FloatDistribution(*span.ends)
+    return of_keys
 
 
 def study_name(study: Study) -> str:
-    """The file's name and a digest of all that changes what a row means, or which rows there are."""
+    """Return the file's name and a digest of all that changes a row's meaning, or which rows there are."""
     file = study.file.model_dump(mode="json", exclude={"run", "design"})
     run = study.file.run
-    told: dict[str, Any] = {
+    identity: dict[str, Any] = {
         "design": study.design.model_dump(mode="json"),
         "study": file,
         "holes": "K_b enclosed, K_e by a share of the cut pieces' compliance",
@@ -166,6 +162,6 @@ def study_name(study: Study) -> str:
         "seed": run.seed,
     }
     if run.method in ("grid", "tolerance"):  # their points depend on how many there are
-        told["evaluations"] = run.evaluations
-    digest = hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:12]
+        identity["evaluations"] = run.evaluations
+    digest = hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:12]
     return f"{study.name}-{run.method}-{digest}"

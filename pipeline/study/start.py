@@ -21,7 +21,7 @@ def start_outcome(
     holes: HolesEffect | None,
     evaluation: Callable[[Task], Outcome] = evaluate,
 ) -> Outcome:
-    """Its figures by the solves of the study, kept with the study's trials."""
+    """Return the first design's figures by the study's solves; they are kept with its trials."""
     stored = store.notes().get(START_NOTE)
     if stored is None:
         tables = study.design.tables

@@ -42,14 +42,14 @@ TRIES = 4
 
 
 def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
-    """Of every length above 0 of both parts, the strongest first within a part; `say` is told each.
+    """Return dK/dp of every length above 0, the strongest first within a part; `say` is told each.
 
     Raises
     ------
     DesignError, ComputationError
     """
     plain = revolved(design)
-    found: list[Slope] = []
+    every: list[Slope] = []
     missing: dict[str, Shortfall] = {}
 
     def changed(values: dict[str, float], name: PartName) -> Part:
@@ -69,8 +69,8 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
         def K_lobes(v: dict[str, float]) -> float:
             return at_lobes(tuple(v.items()))
 
-        here = K({})
-        own = []
+        K_0 = K({})
+        of_part = []
         for key, p in lengths(part).items():
             say(f"dK/dp of {key}")
 
@@ -82,12 +82,12 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
                 held = slope_with_field_held(moved, key, p)
             except DESIGN_FAULTS as fault:
                 why = missing_because(fault)
-            again, error, no_room = _richardson(K, key, p, here)
+            again, error, no_room = _richardson(K, key, p, K_0)
             if held is None and again is None:
                 missing[key] = why
                 continue
             best: float | None = held if held is not None else again
-            of_sum, no_sum = here, MET
+            of_sum, no_sum = K_0, MET
             if part.name == "flexspline" and design.solver.sum_at_lobes:
                 try:
                     of_sum = K_lobes({})
@@ -98,13 +98,13 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             if best is not None:
                 windup = -2 * design.load.torque_Nm / of_sum**2 * best * ARCSEC_PER_RAD
             why = why or no_room
-            own.append(Slope(key, part.name, p, held, again, error, here, windup, why, no_sum))
-        found += sorted(own, key=lambda s: -abs(s.elasticity))
-    return Slopes(tuple(found), missing)
+            of_part.append(Slope(key, part.name, p, held, again, error, K_0, windup, why, no_sum))
+        every += sorted(of_part, key=lambda s: -abs(s.elasticity))
+    return Slopes(tuple(every), missing)
 
 
 def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
-    """A difference over a step so small that one side does where the other cannot be built.
+    """Return a difference over so small a step that one side does where the other cannot be built.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def _central(K: Callable[[dict[str, float]], float], key: str, p: float, share: 
 
 
 def _richardson(
-    K: Callable[[dict[str, float]], float], key: str, p: float, here: float
+    K: Callable[[dict[str, float]], float], key: str, p: float, K_0: float
 ) -> tuple[float | None, float, Shortfall]:
     """Central differences over h and h/2, extrapolated to h = 0; what may be wrong with them, and why
     there are none."""
@@ -141,6 +141,6 @@ def _richardson(
         except DESIGN_FAULTS as fault:
             share, why = share * NARROWER, missing_because(fault)
             continue
-        noise = 5 / 3 * K_WIDTH * here / (share * p)  # K's doubt on each, times the weights
+        noise = 5 / 3 * K_WIDTH * K_0 / (share * p)  # K's doubt on each, times the weights
         return (4 * close - wide) / 3, noise + abs(close - wide) / 3, MET
     return None, 0.0, why

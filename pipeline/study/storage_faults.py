@@ -38,7 +38,7 @@ class OpenedFile:
 
     @classmethod
     def of(cls, url: URL) -> OpenedFile | None:
-        """None where the database is no file."""
+        """Return the database's file; None where the database is no file."""
         path = Path(url.database or "")
         if url.get_backend_name() != "sqlite" or not path.is_file():
             return None
@@ -67,25 +67,25 @@ def storage_faults(file: OpenedFile | None) -> Iterator[None]:
 
 
 def said(fault: BaseException) -> str:
-    """The database's own words, without the statement and its values."""
+    """Return the database's own words, without the statement and its values."""
     fault = _first(fault)
     return one_line((str(fault) or type(fault).__name__).splitlines()[0])
 
 
 def is_damaged(fault: BaseException) -> bool:
-    """Whether it is SQLite's word that the file is none of its own, or no longer: no try will do better."""
+    """Whether SQLite says that the file is damaged or no database: no further try will work."""
     code = getattr(_first(fault), "sqlite_errorcode", 0)
     return code & 0xFF in DAMAGES  # above the lowest byte: details
 
 
 def helps(fault: BaseException) -> str:
-    """What the user can do."""
+    """Return what the user can do."""
     return DAMAGED if is_damaged(fault) else RESUME
 
 
 def _identity(path: Path) -> tuple[int, int]:
-    found = path.stat()
-    return found.st_dev, found.st_ino
+    status = path.stat()
+    return status.st_dev, status.st_ino
 
 
 def _first(fault: BaseException) -> BaseException:

@@ -64,7 +64,7 @@ class ClaimedDesign:
 
 @dataclass(frozen=True)
 class Finished:
-    """What came out of a claimed design; `objectives` is what Optuna is told, None where it failed."""
+    """The outcome of a claimed design; `objectives` are for Optuna, None where the design failed."""
 
     job: ClaimedDesign
     outcome: Outcome
@@ -93,7 +93,7 @@ class TrialStore:
 
     @_plainly
     def refresh(self) -> Claims:
-        """What is known of the trials, with what other processes did since."""
+        """Return what is known of the trials, with what other processes did since."""
         with self._tables.reading() as connection:
             self._read(connection)
         return self._known
@@ -103,7 +103,7 @@ class TrialStore:
         return self.refresh().rows()
 
     def is_begun(self) -> bool:
-        """Whether a design has its row, or somebody alive is at one."""
+        """Whether a design has its row, or a living process works on one."""
         known, dead = self.refresh(), self.dead()
         return known.finished > 0 or any(t.claim.owner not in dead for t in known.open())
 
@@ -115,7 +115,7 @@ class TrialStore:
         values: Callable[[int], Values],
         over: Mapping[str, BaseDistribution],
     ) -> list[ClaimedDesign]:
-        """Up to `count` designs below `size` that nobody has: a dead process's first, then new ones.
+        """Claim up to `count` free designs below `size`: a dead process's first, then new ones.
 
         One transaction, under the study's lock: what was read as free in it is so when it ends.
 
@@ -148,18 +148,18 @@ class TrialStore:
         return jobs
 
     def tries(self, slot: int) -> list[Try]:
-        """Of a slot without a row, as last read."""
+        """Return the tries of a slot without a row, as last read."""
         return list(self._known.tries.get(slot, {}).values())
 
     def values(self, but: int = -1) -> list[Values]:
-        """Of every design that was ever claimed, as last read; of all slots or all but one."""
+        """Return the values of every design ever claimed, as last read; of all slots or all but one."""
         known = self._known
         tried = [t.values for s, tries in known.tries.items() if s != but for t in tries.values()]
         return tried + [r.values for r in known.rows() if r.slot != but]
 
     @_plainly
     def suggested(self, job: ClaimedDesign, over: Mapping[str, BaseDistribution]) -> ClaimedDesign:
-        """A claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
+        """Return a claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
         from optuna.trial import Trial
 
         self.trials.get_trials(deepcopy=False)  # Optuna's cache hears of the trial
@@ -172,11 +172,11 @@ class TrialStore:
     @_plainly
     def finish(self, finished: Sequence[Finished]) -> None:
         """Store rows and close their trials, all in one transaction."""
-        told = {
+        attributes = {
             f.job.trial_id: ({ROW: asdict(f.outcome)}, f.objectives) for f in finished
         }  # fmt: skip
         with self._tables.locked() as connection:
-            closed = self._tables.close(connection, told)
+            closed = self._tables.close(connection, attributes)
         for f in finished:
             self._known.held.discard(f.job.trial_id)
             if f.job.trial_id in closed:
@@ -222,7 +222,7 @@ class TrialStore:
 
     @_plainly
     def notes(self) -> dict[str, Any]:
-        """What is stored beside the trials, by name."""
+        """Return what is stored beside the trials, by name."""
         return dict(self.trials.user_attrs)
 
     @_plainly
@@ -231,11 +231,11 @@ class TrialStore:
         self.trials.set_user_attr(name, value)
 
     def beat(self) -> None:
-        """Say that this process lives, for those that cannot see it."""
+        """Show other processes that this one lives."""
         self.note(f"beat {self.owner}", time.time())
 
     def dead(self) -> set[str]:
-        """Processes that hold designs and are no more, as far as is known."""
+        """Return the processes that hold designs but have ended, as far as is known."""
         owners = {t.claim.owner for t in self._known.open()} - {self.owner}
         return {o for o in owners if self._gone(o)}
 
@@ -267,5 +267,5 @@ def _attempt(tries: Mapping[int, Try] | None) -> int:
 
 
 def as_stored(values: Values, over: Mapping[str, BaseDistribution]) -> dict[str, float]:
-    """As the database hands them out again: a whole number as such."""
+    """Return values as the database gives them back: a whole number as such."""
     return {k: over[k].to_external_repr(over[k].to_internal_repr(v)) for k, v in values.items()}

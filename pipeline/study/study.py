@@ -38,9 +38,9 @@ class Study:
 
     @property
     def start_values(self) -> dict[str, float]:
-        """What the design that it begins with has for the varied keys, where it states them."""
-        found = {key: value_at(self.design, key) for key in self.file.vary}
-        return {key: value for key, value in found.items() if value is not None}
+        """Values of the varied keys in the first design, where it states them."""
+        values = {key: value_at(self.design, key) for key in self.file.vary}
+        return {key: value for key, value in values.items() if value is not None}
 
     @property
     def asked(self) -> frozenset[str]:

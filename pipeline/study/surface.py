@@ -47,14 +47,14 @@ class ResponseSurface:
     errors: np.ndarray
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """The surface's values at points (n, k)."""
+        """Return the surface's values at points (n, k)."""
         return np.asarray(
             _terms(self.inputs, self.polynomials, self.pairs, points) @ self.coefficients
         )
 
     @property
     def variance(self) -> float:
-        """Of the surface, without its misfit."""
+        """Variance of the surface, without its misfit."""
         return float((self.coefficients[1:] ** 2).sum())
 
     @property
@@ -63,31 +63,31 @@ class ResponseSurface:
         return 1 - self.misfit / (self.variance + self.misfit)
 
     def indices(self) -> Indices:
-        """Shares of the variance; the misfit's share may belong to any input, so every interval holds it."""
+        """Return shares of the variance; the misfit may belong to any input, so every interval holds it."""
         first, total = _members(len(self.inputs), self.pairs)
         return Indices(*self._shares(first), *self._shares(total))
 
     def _shares(self, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        own = members @ self.coefficients**2
+        part = members @ self.coefficients**2
         left = self.left_out**2
         half = reach(left @ members.T / left[:, 1:].sum(axis=1, keepdims=True))
         most = self.variance + self.misfit_high
-        value = own / (self.variance + self.misfit)
-        return value, within(own / most - half, value, (own + self.misfit_high) / most + half)
+        value = part / (self.variance + self.misfit)
+        return value, within(part / most - half, value, (part + self.misfit_high) / most + half)
 
 
 def surface_through(
     inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray, block: np.ndarray
 ) -> ResponseSurface | None:
-    """The surface with products of inputs or without, whichever errs less; None: too few designs.
+    """Return the surface with products of inputs or without, whichever errs less; None: too few designs.
 
     Parameters
     ----------
     points : (n, k), values (n,) of designs that could be solved, block (n,) which of 0, 1, … each is of.
     """
     polynomials = tuple(map(_orthonormal, inputs))
-    every = tuple(combinations(range(len(inputs)), 2))
-    tried = [_fitted(inputs, polynomials, pairs, points, values, block) for pairs in (every, ())]
+    full = tuple(combinations(range(len(inputs)), 2))
+    tried = [_fitted(inputs, polynomials, pairs, points, values, block) for pairs in (full, ())]
     return min((s for s in tried if s), key=lambda s: s.misfit, default=None)
 
 
@@ -106,7 +106,7 @@ def _fitted(
     if np.abs(np.diag(r)).min() < LEAST_EIGENVALUE * np.abs(np.diag(r)).max():
         return None
     right = q.T @ values
-    found, squares, errors = [], [], np.empty(len(values))
+    left_out, squares, errors = [], [], np.empty(len(values))
     for group in groups_of(int(block.max()) + 1):
         rows = (block >= group.start) & (block < group.stop)
         if not rows.any():
@@ -116,27 +116,27 @@ def _fitted(
             return None
         without = np.linalg.solve(rest, right - q[rows].T @ values[rows])
         errors[rows] = values[rows] - q[rows] @ without
-        found.append(without)
+        left_out.append(without)
         squares.append(float(np.mean(errors[rows] ** 2)))
-    if len(found) < 2:
+    if len(left_out) < 2:
         return None
     misfit, spread = float(np.mean(squares)), float(np.std(squares, ddof=1))
-    high = misfit + students_factor(len(found) - 1) * spread / len(found) ** 0.5
-    solved = np.linalg.solve(r, np.column_stack([right, *found])).T
+    high = misfit + students_factor(len(left_out) - 1) * spread / len(left_out) ** 0.5
+    solved = np.linalg.solve(r, np.column_stack([right, *left_out])).T
     return ResponseSurface(
         inputs, polynomials, pairs, solved[0], solved[1:], misfit, float(high), errors
     )  # fmt: skip
 
 
-def _orthonormal(own: ScatteredInput) -> np.ndarray:
+def _orthonormal(source: ScatteredInput) -> np.ndarray:
     """1, z and z² of the standardised input, made orthonormal over its distribution."""
-    z = _standardised(own, own.at((np.arange(QUADRATURE_NODES) + 0.5) / QUADRATURE_NODES))
+    z = _standardised(source, source.at((np.arange(QUADRATURE_NODES) + 0.5) / QUADRATURE_NODES))
     _, r = np.linalg.qr(np.vander(z, 3, increasing=True) / QUADRATURE_NODES**0.5)
     return np.asarray(np.linalg.inv(r * np.sign(np.diag(r))[:, None]))
 
 
-def _standardised(own: ScatteredInput, x: np.ndarray) -> np.ndarray:
-    return np.asarray((x - own.nominal) / own.std)
+def _standardised(source: ScatteredInput, x: np.ndarray) -> np.ndarray:
+    return np.asarray((x - source.nominal) / source.std)
 
 
 def _terms(
@@ -146,12 +146,12 @@ def _terms(
     points: np.ndarray,
 ) -> np.ndarray:
     """Columns (n, 1 + 2k + pairs): 1, every input's two polynomials, products of the first ones."""
-    own = [
+    evaluated = [
         np.vander(_standardised(i, x), 3, increasing=True) @ p
         for i, p, x in zip(inputs, polynomials, points.T, strict=True)
     ]
-    columns = [np.ones(len(points)), *(z[:, d] for z in own for d in (1, 2))]
-    return np.column_stack([*columns, *(own[i][:, 1] * own[j][:, 1] for i, j in pairs)])
+    columns = [np.ones(len(points)), *(z[:, d] for z in evaluated for d in (1, 2))]
+    return np.column_stack([*columns, *(evaluated[i][:, 1] * evaluated[j][:, 1] for i, j in pairs)])
 
 
 def _members(k: int, pairs: Sequence[tuple[int, int]]) -> tuple[np.ndarray, np.ndarray]:

@@ -50,7 +50,7 @@ class ScatteredInput:
     normal: bool
 
     def at(self, unit: np.ndarray) -> np.ndarray:
-        """Values for uniform numbers in [0, 1], any shape."""
+        """Return values for uniform numbers in [0, 1], any shape."""
         if self.low == self.high:
             return np.full(np.shape(unit), self.nominal)
         if not self.normal:
@@ -62,7 +62,7 @@ class ScatteredInput:
         return np.clip(drawn, self.low, self.high)
 
     def tightened(self, factor: float) -> ScatteredInput:
-        """The same input with `factor` times the scatter."""
+        """Return the same input with `factor` times the scatter."""
         return ScatteredInput(
             self.key,
             self.nominal,
@@ -74,7 +74,7 @@ class ScatteredInput:
 
 
 def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
-    """The design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
+    """Return the design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
 
     Raises
     ------
@@ -89,16 +89,16 @@ def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
     }
     for key, spread in study.file.tolerance.items():
         stds[key] = spread.std or 0.0
-    found = []
+    inputs = []
     for key, std in stds.items():
         spread_or_none = study.file.tolerance.get(key)
         half = spread_or_none.plus_minus if spread_or_none else None
         if not std and half is None:
             continue
-        found.append(_input(design, key, std, half))
-    if not found:
+        inputs.append(_input(design, key, std, half))
+    if not inputs:
         raise StudyError("tolerance", None, "nothing scatters: give [tolerance] or [uncertainty]")
-    return tuple(found)
+    return tuple(inputs)
 
 
 def _input(design: Design, key: str, std: float, half: float | None) -> ScatteredInput:
@@ -129,7 +129,7 @@ def _range(design: Design, key: str) -> tuple[float, float]:
 
 
 def base_size(study: Study, k: int) -> int:
-    """N: the largest power of two with N(k + 2) within `run.evaluations`.
+    """Return N: the largest power of two with N(k + 2) within `run.evaluations`.
 
     Raises
     ------
@@ -144,14 +144,14 @@ def base_size(study: Study, k: int) -> int:
 
 
 def saltelli(inputs: tuple[ScatteredInput, ...], base: int, seed: int) -> np.ndarray:
-    """Points (base·(k + 2), k), block by block: A, A with each input from B, B."""
+    """Return points (base·(k + 2), k), block by block: A, A with each input from B, B."""
     from scipy.stats import qmc
 
     k = len(inputs)
     both = qmc.Sobol(2 * k, scramble=True, seed=seed).random(base)
     blocks = np.repeat(both[:, None, :k], k + 2, axis=1)
-    own = np.arange(k)
-    blocks[:, own + 1, own] = both[:, k:]
+    number = np.arange(k)
+    blocks[:, number + 1, number] = both[:, k:]
     blocks[:, -1] = both[:, k:]
     unit = blocks.reshape(-1, k)
     return np.column_stack([x.at(u) for x, u in zip(inputs, unit.T, strict=True)])
@@ -177,15 +177,15 @@ class ScatteredDesigns(PlannedDesigns):
         """
         changed = linked(self.study, values)
         material = self.study.design.material
-        own = SHAFT_MODULUS in values or SHAFT_MODULUS in self.study.file.link
-        if MODULUS in values and material.shaft is not None and not own:
+        shaft_varies = SHAFT_MODULUS in values or SHAFT_MODULUS in self.study.file.link
+        if MODULUS in values and material.shaft is not None and not shaft_varies:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
         return Task(self._tables, changed, self.solves, self.holes)
 
 
 def scattered(study: Study, holes: HolesEffect | None) -> ScatteredDesigns:
-    """The source of a tolerance study.
+    """Return the source of a tolerance study.
 
     Raises
     ------

@@ -70,7 +70,7 @@ class TrialTables:
     def changed(
         self, connection: Connection, after: int, among: Sequence[int]
     ) -> list[StoredTrial]:
-        """Trials made after the one with id `after`, and those with ids `among`, by id.
+        """Return trials made after the one with id `after`, and those with ids `among`, by id.
 
         Ids rise with time because trials are made under the study's lock.
         """
@@ -81,25 +81,27 @@ class TrialTables:
         trial, attribute, param = (
             models.TrialModel, models.TrialUserAttributeModel, models.TrialParamModel,
         )  # fmt: skip
-        asked = and_(
+        condition = and_(
             trial.study_id == self.study_id,
             or_(trial.trial_id > after, trial.trial_id.in_(among)) if among
             else trial.trial_id > after,
         )  # fmt: skip
         # the states first: a trial that is finished by then has all else
-        states = select(trial.trial_id, trial.number, trial.state).where(asked)
+        states = select(trial.trial_id, trial.number, trial.state).where(condition)
         known = connection.execute(states.order_by(trial.trial_id)).all()
         if not known:
             return []
         attributes: dict[int, dict[str, Any]] = {}
-        found = select(attribute.trial_id, attribute.key, attribute.value_json)
-        for at, key, text in connection.execute(found.join(trial).where(asked)):
+        attribute_query = select(attribute.trial_id, attribute.key, attribute.value_json)
+        for at, key, text in connection.execute(attribute_query.join(trial).where(condition)):
             attributes.setdefault(at, {})[key] = json.loads(text, object_pairs_hook=_shared_keys)
         values: dict[int, dict[str, float]] = {}
         spans: dict[str, BaseDistribution] = {}
-        told = select(param.trial_id, param.param_name, param.param_value, param.distribution_json)
+        params = select(
+            param.trial_id, param.param_name, param.param_value, param.distribution_json
+        )
         for at, key, number, text in connection.execute(
-            told.join(trial).where(asked).order_by(param.param_id)
+            params.join(trial).where(condition).order_by(param.param_id)
         ):
             span = spans.get(text) or spans.setdefault(text, json_to_distribution(text))
             values.setdefault(at, {})[sys.intern(key)] = span.to_external_repr(number)
@@ -115,7 +117,8 @@ class TrialTables:
         trials: Sequence[tuple[Mapping[str, Any], Values]],
         over: Mapping[str, BaseDistribution],
     ) -> list[int]:
-        """RUNNING trials, numbered from `first`, of (attributes, values); their ids. Under the lock."""
+        """Create RUNNING trials, numbered from `first`, of (attributes, values), under the lock; return their
+        ids."""
         from optuna.distributions import distribution_to_json
         from optuna.storages._rdb import models
         from optuna.trial import TrialState
@@ -139,10 +142,10 @@ class TrialTables:
         )
         ids = sorted(connection.scalars(made))
         self._attributes(connection, {at: a for at, (a, _) in zip(ids, trials, strict=True)})
-        said = {key: distribution_to_json(span) for key, span in over.items()}
+        distributions = {key: distribution_to_json(span) for key, span in over.items()}
         params = [
             {
-                "trial_id": at, "param_name": key, "distribution_json": said[key],
+                "trial_id": at, "param_name": key, "distribution_json": distributions[key],
                 "param_value": over[key].to_internal_repr(value),
             }
             for at, (_, values) in zip(ids, trials, strict=True)
@@ -192,13 +195,15 @@ class TrialTables:
         connection.execute(closed, [{"at": at, "ended": states[at]} for at in sorted(ids)])
         return ids
 
-    def _attributes(self, connection: Connection, told: Mapping[int, Mapping[str, Any]]) -> None:
+    def _attributes(
+        self, connection: Connection, of_trials: Mapping[int, Mapping[str, Any]]
+    ) -> None:
         from optuna.storages._rdb import models
         from sqlalchemy import insert
 
         rows = [
             {"trial_id": at, "key": key, "value_json": json.dumps(value)}
-            for at, attributes in told.items()
+            for at, attributes in of_trials.items()
             for key, value in attributes.items()
         ]
         if rows:

@@ -45,36 +45,36 @@ DIED = SolidAnswer(Outcome(faults=(WORKER_DIED,)), passing=True)
 
 
 def solid_answer(task: Task, rim: bool) -> SolidAnswer:
-    """One design by the solid model; `rim`: the lobes and the ellipse too."""
+    """Solve one design by the solid model; `rim`: the lobes and the ellipse too."""
     try:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
         context = analysis_context(design)
-        found = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
-        return SolidAnswer(Outcome(_figures(design, found)), found.passing)
+        result = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
+        return SolidAnswer(Outcome(_figures(design, result)), result.passing)
     except NestingError as fault:
         return SolidAnswer(Outcome(faults=(str(fault),), contradicted=True))
     except NotFoundError as fault:
-        return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
+        return SolidAnswer(Outcome(faults=(str(fault),)), fault.stiffnesses.passing)
     except (*DESIGN_FAULTS, MemoryError) as fault:
         why = missing_because(fault)
         return SolidAnswer(Outcome(faults=(why.words,)), why.of_the_machine)
 
 
-def _figures(design: Design, found: Stiffnesses) -> dict[str, float]:
+def _figures(design: Design, result: Stiffnesses) -> dict[str, float]:
     """By result.json key; raises NotFoundError without the K of the backlash sum."""
-    total = backlash_of(design, found)
+    total = backlash_of(design, result)
     figures = {
         "backlash_arcsec.shaft": total.shaft_arcsec,
         "backlash_arcsec.flexspline": total.flexspline_arcsec,
         "backlash_arcsec.total": total.total_arcsec,
     }
     for name in ("K_b", "K_e", *map(figure_of, SOLID_CASES)):
-        if name in found.solved:
-            figures |= stiffness_figures(name, found[name])
-    if found.wave_generator_peak is not None:
-        figures["wave_generator_peak_mises_MPa"] = found.wave_generator_peak.mises_MPa
+        if name in result.solved:
+            figures |= stiffness_figures(name, result[name])
+    if result.wave_generator_peak is not None:
+        figures["wave_generator_peak_mises_MPa"] = result.wave_generator_peak.mises_MPa
     return figures
 
 
@@ -85,7 +85,7 @@ def verify(
     task: Callable[[Mapping[str, float]], Task],
     say: Callable[[str], None],
 ) -> tuple[Verified, ...]:
-    """The first `run.verify` of the best designs; what is stored is not solved again.
+    """Solve the first `run.verify` of the best designs; what is stored is not solved again.
 
     An answer that time or memory was too short for is of this run only: the next one solves it again.
     """
@@ -112,7 +112,7 @@ def verify(
 
 
 def checked(row: Row, solid: Outcome, solver: Solver) -> Verified:
-    """Figures that both models have, side by side; `solver` says which K_b is in the backlash."""
+    """Return figures of both models, side by side; `solver` says which K_b is in the backlash."""
     fast = row.outcome.figures
     K_b = f"{solver.K_b_in_sum}_Nm_per_rad"
     keys = [k for k in solid.figures if k in fast and not k.endswith(("]", "shaft", "flexspline"))]

@@ -32,19 +32,19 @@ def serve() -> None:
 
 
 def answer(call: bytes) -> bytes:
-    """A pickled (function, arguments) carried out: (True, its result) or (False, its error), pickled."""
+    """Carry out a pickled (function, arguments); return (True, its result) or (False, its error), pickled."""
     try:
         function, arguments = pickle.loads(call)
         return pickle.dumps((True, function(*arguments)))
     except Exception as fault:
-        told = traceback.format_exc()
+        trace = traceback.format_exc()
         try:
-            fault.add_note(told)
-            said = pickle.dumps((False, fault))
-            pickle.loads(said)  # an error that asks for more than a message cannot be made again
+            fault.add_note(trace)
+            reply = pickle.dumps((False, fault))
+            pickle.loads(reply)  # an error that asks for more than a message cannot be made again
         except Exception:
-            said = pickle.dumps((False, RuntimeError(told)))
-        return said
+            reply = pickle.dumps((False, RuntimeError(trace)))
+        return reply
 
 
 def write_frame(stream: BinaryIO, data: bytes) -> None:
@@ -54,7 +54,7 @@ def write_frame(stream: BinaryIO, data: bytes) -> None:
 
 
 def read_frame(stream: BinaryIO) -> bytes | None:
-    """The next frame; None where the stream ends."""
+    """Return the next frame; None where the stream ends."""
     head = stream.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         return None

@@ -107,9 +107,9 @@ def mesh_of(K: float, error: float) -> MeshResult:
 def test_two_meshes_give_the_scale_of_an_estimate() -> None:
     """K = 100; upper bounds 10 and 4 too large, of which the estimate sees 40 %: c = 2.5."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(mesh_of(110.0, 4.0 / 110.0))
+    found = found.with_mesh(mesh_of(110.0, 4.0 / 110.0))
     assert (found.scale, found.relative) == (2.0, 2.0 * 4.0 / 110.0)
-    found.add(mesh_of(104.0, 1.6 / 104.0))
+    found = found.with_mesh(mesh_of(104.0, 1.6 / 104.0))
     assert found.scale == pytest.approx(2.5, rel=1e-12)
     bounds = found.at_given_angle()
     assert bounds == pytest.approx((100.0, 96.0, 104.0), rel=1e-12)
@@ -118,8 +118,8 @@ def test_two_meshes_give_the_scale_of_an_estimate() -> None:
 def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
     """1/K = 0.0100; meshes 10 and 4 % too stiff by their energy, a hundredth of it left out besides."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(mesh_of(1 / 0.0090, 0.0004 / 0.0090))
-    found.add(mesh_of(1 / 0.0096, 0.00016 / 0.0096))
+    found = found.with_mesh(mesh_of(1 / 0.0090, 0.0004 / 0.0090))
+    found = found.with_mesh(mesh_of(1 / 0.0096, 0.00016 / 0.0096))
     assert 1 / found.at_given_torque().upper == pytest.approx(0.0096)
     error = found.relative
     assert [1 / K for K in found.at_given_torque()] == pytest.approx(
@@ -136,19 +136,19 @@ def test_at_a_given_torque_the_estimate_is_added_to_the_angle() -> None:
 def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected: float) -> None:
     """Too large, too small, and an estimate that rose, which says nothing: the careful end."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(mesh_of(110.0, 4.0 / 110.0))
-    found.add(mesh_of(K, estimate / K))
+    found = found.with_mesh(mesh_of(110.0, 4.0 / 110.0))
+    found = found.with_mesh(mesh_of(K, estimate / K))
     assert found.scale == expected
 
 
 def test_what_no_mesh_takes_away_is_added_to_both_ends() -> None:
     """Of the last mesh: K₀ and its field are solved better for each."""
     found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
-    found.add(replace(mesh_of(90.0, 0.01), doubt=0.5))
-    found.add(replace(mesh_of(90.0, 0.01), doubt=0.02))
+    found = found.with_mesh(replace(mesh_of(90.0, 0.01), doubt=0.5))
+    found = found.with_mesh(replace(mesh_of(90.0, 0.01), doubt=0.02))
     none = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
     for _ in range(2):
-        none.add(mesh_of(90.0, 0.01))
+        none = none.with_mesh(mesh_of(90.0, 0.01))
     assert found.K_Nm_per_rad == 90.0
     with_it, without = found.at_given_angle(), none.at_given_angle()
     assert with_it.K == without.K
@@ -168,7 +168,7 @@ def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: f
     limit, first = 5140.0, 60.0
     found = ScaledEstimate(usual=2.0, believed=(2.5, 4.2), falls=ERROR_RATIOS)
     for n in range(5):
-        found.add(mesh_of(limit + first * q**n, 0.0002 * 0.95**n))
+        found = found.with_mesh(mesh_of(limit + first * q**n, 0.0002 * 0.95**n))
         if n >= 2:
             assert found.K_Nm_per_rad * (1 - 2 * found.relative) <= limit
     alone = ScaledEstimate(2.0, (2.5, 4.2), found.meshes)

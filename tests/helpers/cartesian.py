@@ -54,7 +54,7 @@ def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
 def body_load(mesh: TetMesh, force: np.ndarray) -> np.ndarray:
     """Nodal forces (n, 3) of a constant force (3,) per volume."""
     weights = basis_of(quadratic_mesh(mesh.nodes, mesh.cells)).dx
-    shares = np.einsum("mq,qi->mi", weights, reference_values(tet_rule(4)[0]))
+    shares = np.einsum("mq,qi->mi", weights, reference_values(tet_rule()[0]))
     load = np.zeros_like(mesh.nodes)
     np.add.at(load, mesh.cells, shares[..., None] * force)
     return load

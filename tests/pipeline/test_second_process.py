@@ -69,7 +69,7 @@ def test_what_the_other_process_found_is_told_as_it_comes() -> None:
     with second_process():
         pids = results_of(
             [partial(wait_and_say, k) for k in range(6)],
-            told=lambda number, pid: told.append((number, pid)),
+            on_result=lambda number, pid: told.append((number, pid)),
         )
     assert sorted(told) == [*enumerate(pids)]  # each once, with its own result
     ours = [pid == os.getpid() for _, pid in told]
@@ -83,7 +83,7 @@ def test_a_fault_of_the_listener_is_raised() -> None:
             raise ValueError("not wanted")
 
     with second_process(), pytest.raises(ValueError, match="not wanted"):
-        results_of([partial(wait_and_say, k) for k in range(4)], told=listener)
+        results_of([partial(wait_and_say, k) for k in range(4)], on_result=listener)
 
 
 def test_all_is_told_where_there_is_one_process_and_where_the_other_fails() -> None:
@@ -96,9 +96,9 @@ def test_all_is_told_where_there_is_one_process_and_where_the_other_fails() -> N
         return number
 
     tasks = [partial(task, k) for k in range(4)]
-    results_of(tasks, told=lambda number, result: told.append((number, result)))
+    results_of(tasks, on_result=lambda number, result: told.append((number, result)))
     with second_process():
-        results_of(tasks, told=lambda number, result: told.append((number, result)))
+        results_of(tasks, on_result=lambda number, result: told.append((number, result)))
     assert sorted(told) == sorted(2 * [(k, k) for k in range(4)])
 
 

@@ -62,7 +62,7 @@ def test_the_sum_follows_its_own_stiffness(load_case: str, monkeypatch: pytest.M
     monkeypatch.setattr(
         stiffness_slopes, "lengths", lambda part: {key: here} if part.name == "flexspline" else {}
     )
-    (found,) = stiffness_slopes.slopes(design, lambda _: None).found
+    (found,) = stiffness_slopes.slopes(design, lambda _: None).slopes
     expected = (term(here + step) - term(here - step)) / (2 * step)
     # its bend over ± 0.05 mm, and K known to 2e-4 of some 30 arcsec over 0.1 mm
     assert found.backlash_arcsec_per_mm == pytest.approx(expected, rel=0.1, abs=0.06)
@@ -80,7 +80,7 @@ def test_a_sum_without_a_slope_says_why(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(
         stiffness_slopes, "lengths", lambda part: {key: 0.55} if part.name == "flexspline" else {}
     )
-    (found,) = stiffness_slopes.slopes(design, lambda _: None).found
+    (found,) = stiffness_slopes.slopes(design, lambda _: None).slopes
     assert found.agree
     assert found.backlash_arcsec_per_mm is None
     assert found.why_no_sum.of_the_machine
