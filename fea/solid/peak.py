@@ -69,8 +69,8 @@ def superposed_field(
     """Return `stress_field`, where the stress of the part without holes and keyway is known at any point.
 
     `change` (n, 3) [mm] is what these cuts change of the displacement. Only its stress has the mesh's error,
-    which for the whole displacement is large at singular patch edges far from the cuts too: a shaft with 8 holes
-    in its flange had 4.32 MPa beside its grip in place of 3.57.
+    which for the whole displacement is large at singular patch edges far from the cuts too: a shaft with 8
+    holes in its flange had 4.32 MPa beside its grip in place of 3.57.
     """
     nodal = without_cuts(mesh.nodes)
     stress = nodal_stress(mesh, change, material) + nodal
