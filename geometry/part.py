@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import hypot
+from math import hypot, inf
 from typing import Any
 
 from flexspline.geometry.bolts import BoltCircle
@@ -92,6 +92,21 @@ class Part:
             for x, y in bolts.centres
         )
         return min(away) < bolts.hole_radius + SAME_mm
+
+    @property
+    def ligament_mm(self) -> float:
+        """The thinnest material between a bolt hole and the next one or an edge of the part [mm].
+
+        Infinite where there are no holes.
+        """
+        bolts = self.bolts
+        if bolts is None:
+            return inf
+        ends = (end for segment in self.meridian.segments for end in (segment.start, segment.end))
+        edges = [r for r, z in ends if z < self.hole_depth + SAME_mm and r > 0]
+        inside = [bolts.inner - r for r in edges if r < bolts.inner]
+        outside = [r - bolts.outer for r in edges if r > bolts.outer]
+        return min(*inside, *outside, bolts.pitch - 2 * bolts.hole_radius, inf)
 
     def without_holes(self) -> Part:
         """The body of revolution that it would be: no bolt holes, no keyway."""

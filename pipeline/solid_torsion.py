@@ -103,6 +103,7 @@ class TwistedPart:
     """A solid part's stiffness; its field for a turn of 1 rad, where K needed it (else `turned_field`).
 
     `rim` is the finest of its meshes that is small enough for the lobe cases (`fits_rim`).
+    `change` : (n, 3) what holes and keyway change of the field [mm], where that was solved alone.
     `without_fillets`: a shaft's meshes have sharp corners in place of its fillets.
     """
 
@@ -110,6 +111,7 @@ class TwistedPart:
     meshed: MeshedPart
     turned: TurnedField | None
     rim: MeshedPart
+    change: np.ndarray | None = None
     without_fillets: bool = False
 
 
@@ -291,4 +293,5 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: flo
     short = refined.stiffness.shortfall
     if short:
         short = replace(short, words=f"{short}; {remedy(model)}")
-    return TwistedPart(replace(refined.stiffness, shortfall=short), meshed[-1], turned, meshed[rim])
+    stiffness = replace(refined.stiffness, shortfall=short)
+    return TwistedPart(stiffness, meshed[-1], turned, meshed[rim], refined.change)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from dataclasses import replace
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import torsion_stress
-from flexspline.fea.deadline import Deadline
-from flexspline.fea.solid.peak import stress_field
+from flexspline.fea.axisymmetric.torsion_at_points import TorsionAtPoints
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.peak import stress_field, superposed_field
 from flexspline.fea.types import MET, Shortfall, SolidField
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.percent import percent
 from flexspline.pipeline.part_stiffness import turned_field, twisted_part
@@ -35,17 +38,8 @@ def torque_field(model: PartModel) -> SolidField:
     DesignError
     ComputationError, MemoryError : the solve failed.
     """
-    torque = model.context.design.load.torque_Nm
     twisted = twisted_part(model)
-    turned = turned_field(model, twisted)
-    with model.context.progress.stage(f"stress of the {model.name} under torque"):
-        solved = stress_field(
-            twisted.meshed.mesh,
-            turned.displacement * (torque / turned.K_Nm_per_rad),
-            model.material,
-            f"{model.name} under T_L = {torque:g} N·m",
-            sharp_edges(model, twisted.meshed),
-        )
+    solved = _superposed(model, twisted) or _of_mesh(model, twisted)
     if model.axisymmetric:
         left_out = FILLETS if twisted.without_fillets else ""
         return replace(solved, peak=body_peak(model, _load(model)), left_out=left_out)
@@ -56,6 +50,57 @@ def torque_field(model: PartModel) -> SolidField:
     shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
     solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
     return marked_unfilleted(solved) if twisted.without_fillets else solved
+
+
+def _of_mesh(model: PartModel, twisted: TwistedPart) -> SolidField:
+    """Return the field that the finest mesh has of the whole load; errors as `turned_field`."""
+    torque, turned = model.context.design.load.torque_Nm, turned_field(model, twisted)
+    with _stage(model):
+        return stress_field(
+            twisted.meshed.mesh,
+            turned.displacement * (torque / turned.K_Nm_per_rad),
+            model.material,
+            _title(model),
+            sharp_edges(model, twisted.meshed),
+        )
+
+
+def _superposed(model: PartModel, twisted: TwistedPart) -> SolidField | None:
+    """Return the field without holes and keyway, from the meridian, plus what these change of it.
+
+    None where K is not from that change, or the meridian was not solved.
+    """
+    if twisted.change is None:
+        return None
+    whole = replace(model, part=model.part.without_holes())
+    # of 1 rad, by the K that this change of the displacement leaves
+    angle = model.context.design.load.torque_Nm / twisted.stiffness.levels[-1].K_Nm_per_rad
+    with _stage(model):
+        try:
+            without = TorsionAtPoints(
+                _load(whole).solve(whole.part.meridian, Deadline(STAGE_SECONDS))
+            )
+            displacement = twisted.change + without.displacement(twisted.meshed.mesh.nodes)
+            return superposed_field(
+                twisted.meshed.mesh,
+                displacement * angle,
+                twisted.change * angle,
+                lambda points: without.stress(points) * angle,
+                model.material,
+                _title(model),
+                sharp_edges(model, twisted.meshed),
+            )
+        except ComputationError as fault:
+            model.context.progress.note(f"  {model.name}: not solved without its cuts, {fault}")
+            return None
+
+
+def _stage(model: PartModel) -> AbstractContextManager[None]:
+    return model.context.progress.stage(f"stress of the {model.name} under torque")
+
+
+def _title(model: PartModel) -> str:
+    return f"{model.name} under T_L = {model.context.design.load.torque_Nm:g} N·m"
 
 
 def _load(model: PartModel) -> BodyLoad:

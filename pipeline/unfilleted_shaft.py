@@ -117,5 +117,6 @@ def _between_shafts(model: PartModel, tolerance: float) -> TwistedPart:
             levels=levels,
             shortfall=shortfall,
         ),
+        change=None,
         without_fillets=True,
     )

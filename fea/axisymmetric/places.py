@@ -39,20 +39,11 @@ class Places:
         ------
         MeshingError : one is farther outside than OUTSIDE of the mesh's size.
         """
-        from scipy.spatial import cKDTree
-
         mesh, element = space.basis.mesh, space.basis.elem
         straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
-        mapping, points = MappingAffine(straight), np.stack([r, z])
-        triangle = triangles_of(straight, points)
-        if (outside := triangle < 0).any():
-            away, nearest = cKDTree(space.places).query(points[:, outside].T)
-            if away.max() > OUTSIDE * np.ptp(straight.p, axis=1).max():
-                raise MeshingError(f"{outside.sum()} of {len(r)} places are not on the meridian")
-            points[:, outside] = space.places[nearest].T
-            triangle[outside] = triangles_of(straight, points[:, outside])
-        local = mapping.invF(points[:, :, None], tind=triangle)
-        shapes = [element.gbasis(mapping, local, i, tind=triangle)[0] for i in range(6)]
+        triangle, local = located(straight, space.places, r, z)
+        mapping, at = MappingAffine(straight), local[:, :, None]
+        shapes = [element.gbasis(mapping, at, i, tind=triangle)[0] for i in range(6)]
         return cls(space.basis.element_dofs[:, triangle], tuple(shapes))
 
     def see(self, field: np.ndarray) -> Any:
@@ -61,3 +52,27 @@ class Places:
         value = sum(amplitude * np.asarray(shape)[:, 0] for amplitude, shape in numbered)
         slope = sum(amplitude * shape.grad[:, :, 0] for amplitude, shape in numbered)
         return DiscreteField(value, grad=slope)
+
+
+def located(
+    straight: MeshTri, numbers: np.ndarray, r: np.ndarray, z: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the triangle (k,) of each point r, z (k,) [mm], and its reference coordinates (2, k) there.
+
+    A point just outside is moved to the nearest of the places (count, 2) of the mesh's numbers.
+
+    Raises
+    ------
+    MeshingError : one is farther outside than OUTSIDE of the mesh's size.
+    """
+    from scipy.spatial import cKDTree
+
+    points = np.stack([r, z])
+    triangle = triangles_of(straight, points)
+    if (outside := triangle < 0).any():
+        away, nearest = cKDTree(numbers).query(points[:, outside].T)
+        if away.max() > OUTSIDE * np.ptp(straight.p, axis=1).max():
+            raise MeshingError(f"{outside.sum()} of {len(r)} places are not on the meridian")
+        points[:, outside] = numbers[nearest].T
+        triangle[outside] = triangles_of(straight, points[:, outside])
+    return triangle, MappingAffine(straight).invF(points[:, :, None], tind=triangle)[:, :, 0]

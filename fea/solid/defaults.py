@@ -34,6 +34,10 @@ EDGE_GROWTH = 0.7
 ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
 """Envelopes of the mesher in a flexspline's wall, and in a shaft's largest edge. The nodes are moved back
 onto the surface afterwards."""
+ENVELOPES_PER_LIGAMENT = 10
+"""Envelopes of the mesher in the thinnest material beside a bolt hole. With 2.5 of them in 0.05 mm a cup had
+31 092 and 31 186 N·m/rad in two runs, bounds ± 0.1 %; with 5 and 10 it has 30 972 and 30 968. NGSolve, from
+above: 30 986."""
 FINEST_SHARE = 20
 """Outer radius over the largest edge, at most. A wall of a hundredth of the radius then gets one layer of
 long elements, and the part is not filled with short ones."""
@@ -72,7 +76,7 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         far = edge_length_mm
         refuse_beyond(outer * part.length / far**2, far)  # before CAD makes chords as fine
         near = min(near, far)
-    envelope = min(envelope, near / ENVELOPES_PER_EDGE)
+    envelope = min(envelope, near / ENVELOPES_PER_EDGE, part.ligament_mm / ENVELOPES_PER_LIGAMENT)
     return MeshSpec(
         grading=Grading(near, far, growth=EDGE_GROWTH),
         envelope=envelope,

@@ -76,11 +76,15 @@ class MeshSequence:
 
 @dataclass(frozen=True)
 class RefinedStiffness:
-    """The stiffness, and all meshes, coarse to fine; `turned`: the finest one's field, if it was solved."""
+    """The stiffness, and all meshes, coarse to fine.
+
+    `turned`, `change` : the finest mesh's field and what the cuts change of it, if solved (`TurnedMesh`).
+    """
 
     stiffness: Stiffness
     meshes: tuple[TetMesh, ...]
     turned: SolvedStiffness | None
+    change: np.ndarray | None
 
 
 def solid_stiffness(
@@ -109,7 +113,7 @@ def solid_stiffness(
     if shortfall and len(torsion.meshes) < MAX_LEVELS:
         progress(f"K ± {percent(torsion.half)} stays, {shortfall}")
     answer = torsion.answer(symmetry, shortfall)
-    return RefinedStiffness(answer, tuple(torsion.meshes), torsion.turned)
+    return RefinedStiffness(answer, tuple(torsion.meshes), torsion.turned, torsion.change)
 
 
 class _SolidTorsion:
@@ -160,7 +164,8 @@ class _SolidTorsion:
             result = full.solve(model)
             estimate = _of(full, model.mesh).with_mesh(result)
             self._field = full
-        self.estimate, self.turned, self._errors = estimate, result.turned, result.errors
+        self.estimate, self._errors = estimate, result.errors
+        self.turned, self.change = result.turned, result.change
 
     @property
     def half(self) -> float:

@@ -38,10 +38,15 @@ class CorrectionError(SolidError):
 
 @dataclass(frozen=True)
 class TurnedMesh(MeshResult):
-    """One mesh in torsion, with its elements' errors (m,); `turned`: the whole field, if it was solved."""
+    """One mesh in torsion, with its elements' errors (m,); `turned`: the whole field, if it was solved.
+
+    `change` : (n, 3) what the cuts change of the displacement for a turn of 1 rad, Cartesian [mm], if that
+    was solved alone.
+    """
 
     errors: np.ndarray = field(kw_only=True)
     turned: SolvedStiffness | None = field(default=None, kw_only=True)
+    change: np.ndarray | None = field(default=None, kw_only=True)
 
 
 class TorsionSolver(FieldSolver[TurnedMesh], Protocol):
@@ -115,7 +120,8 @@ class TorsionCorrection:
         doubt = known.width_Nm_per_rad / 2 + correction.doubt / NMM_PER_NM
         level = correction.level(K, check)
         error = whole_error / NMM_PER_NM / K
-        return TurnedMesh(level, error, doubt / K, errors=errors, turned=turned)
+        change = correction.displacement
+        return TurnedMesh(level, error, doubt / K, errors=errors, turned=turned, change=change)
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""

@@ -112,8 +112,12 @@ class Tab:
                           **first})  # fmt: skip
 
     def _look_at(self, view: str) -> None:
-        if self._wanted is not None and self._wanted.view != view:
-            self._set(replace(self._wanted, view=view))
+        if (before := self._wanted) is None or before.view == view:
+            return
+        wanted = replace(before, view=view, begun=asyncio.Event())
+        if before.begun.is_set():
+            wanted.begun.set()
+        self._set(wanted)
 
     def _set(self, wanted: WantedDesign) -> None:
         if self._wanted is not None:

@@ -89,3 +89,19 @@ def test_holes_and_keyway_that_are_one_cut(
     assert replace(part, shape=Shaft.model_validate(shape)).cuts_meet is meet
     del shape["keyway"]
     assert not replace(part, shape=Shaft.model_validate(shape)).cuts_meet
+
+
+def test_the_thinnest_material_beside_a_bolt_hole() -> None:
+    cup = load_design(EXAMPLES / "xb1-40.toml")
+    # six holes of 2.5 on 13 mm: 4 mm apart, 1.25 mm from the bore of 8 and from the boss of 18
+    assert cup.part("flexspline").ligament_mm == pytest.approx(1.25)
+    wide = cup.changed({"flexspline.bolt_hole_diameter_mm": 4.6, "flexspline.bolt_count": 8})
+    assert wide.part("flexspline").ligament_mm == pytest.approx(0.2)
+    # on a circle of 13 mm chords are 13 sin(π/8) = 4.975 mm
+    close = wide.changed(
+        {"flexspline.bolt_hole_diameter_mm": 4.9, "flexspline.bore_diameter_mm": 7.0}
+    )
+    assert close.part("flexspline").ligament_mm == pytest.approx(0.05)
+    one = cup.changed({"flexspline.bolt_count": 1})
+    assert one.part("flexspline").ligament_mm == pytest.approx(1.25)
+    assert without_holes(cup).part("flexspline").ligament_mm == float("inf")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Mapping
 from socket import SHUT_RDWR
 from typing import Any
@@ -135,5 +136,23 @@ def test_the_first_stress_is_drawn_after_the_first_figures() -> None:
                 note = await heard(socket)
                 got.append(note.get("question", note["is"]))
         assert got.index(FIRST_LOBES) < got.index("picture")
+
+    with_client(check, worker=worker)
+
+
+def test_another_view_of_a_design_without_figures_waits_for_them_too() -> None:
+    """A change that is refused leaves the design before, which may be in another view by then."""
+    worker = Asked(FIRST_LOBES)
+
+    async def check(client: aiohttp.test_utils.TestClient) -> None:
+        async with client.ws_connect("/live") as socket:
+            await heard(socket)
+            await socket.send_str(want(1, TABLES))
+            await worker.until(TABLES["name"], FIRST_LOBES)
+            refused = TABLES | {"flexspline": TABLES["flexspline"] | {"wall_thickness_mm": -1.0}}
+            other = json.loads(want(2, refused)) | {"view": "flexspline_torque"}
+            await socket.send_str(json.dumps(other))
+            await asyncio.sleep(2 * STILL_S)
+            assert {question for _, question in worker.noted}.isdisjoint(REFINED)
 
     with_client(check, worker=worker)

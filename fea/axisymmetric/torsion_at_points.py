@@ -1,0 +1,74 @@
+"""Evaluates a body of revolution's torsion at any points, in Cartesian components."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from skfem import MeshTri
+
+from flexspline.fea.axisymmetric.places import located
+from flexspline.fea.axisymmetric.recovery import R_THETA, THETA_Z
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.cylindrical import TANGENTIAL
+from flexspline.fea.quadratic_triangle import shape_functions
+
+DIGITS = 9
+"""Of r and z [mm], beyond which two places are one: nodes of a swept mesh share theirs, but for rounding."""
+
+
+@dataclass(frozen=True)
+class TorsionAtPoints:
+    """Displacement and smoothed stress of a solved torsion for a turn of 1 rad."""
+
+    field: RevolvedField
+
+    def displacement(self, points: np.ndarray) -> np.ndarray:
+        """Return it (k, 3) [mm] at points (k, 3) [mm]; raises MeshingError as `located`."""
+        around = _directions(points)[1]
+        return self._seen(self.field.displacement[:, TANGENTIAL], points)[:, None] * around
+
+    def stress(self, points: np.ndarray) -> np.ndarray:
+        """Return it (k, 3, 3) [MPa] at points (k, 3) [mm]; raises MeshingError as `located`."""
+        outward, around, along = _directions(points)
+        shear = self._seen(self.field.stress[:, [R_THETA, THETA_Z]], points)
+        in_plane = shear[:, :1] * outward + shear[:, 1:] * along
+        half = np.einsum("ka,kb->kab", in_plane, around)
+        return half + half.swapaxes(1, 2)
+
+    @cached_property
+    def _straight(self) -> MeshTri:
+        """The triangles by their corners alone."""
+        corners, of = np.unique(self.field.triangles[:, :3], return_inverse=True)
+        points, triangles = self.field.places[corners].T, of.reshape(-1, 3).T
+        return MeshTri(*map(np.ascontiguousarray, (points, triangles)), sort_t=False)
+
+    @property
+    def _angle(self) -> float:
+        """Of the driven patch [rad]; no other node turns by more."""
+        r = self.field.places[:, 0]
+        return float((self.field.displacement[r > 0, TANGENTIAL] / r[r > 0]).max())
+
+    def _seen(self, nodal: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Return values at the P2 nodes (count, ...) at points, for a turn of 1 rad."""
+        x, y, z = points.T
+        places, of = np.unique(
+            np.stack([np.hypot(x, y), z], axis=1).round(DIGITS), axis=0, return_inverse=True
+        )
+        triangle, local = located(self._straight, self.field.places, *places.T)
+        shapes = shape_functions(local)
+        nodes = self.field.triangles[triangle].T
+        values = sum(
+            shape.reshape(-1, *[1] * (nodal.ndim - 1)) * nodal[node]
+            for shape, node in zip(shapes, nodes, strict=True)
+        )
+        return np.asarray(values)[of.ravel()] / self._angle
+
+
+def _directions(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the directions (k, 3) of r, φ and z at points; on the axis those of x, y and z."""
+    phi = np.arctan2(points[:, 1], points[:, 0])
+    c, s, nought = np.cos(phi), np.sin(phi), np.zeros_like(phi)
+    along = np.stack([nought, nought, nought + 1], axis=1)
+    return np.stack([c, s, nought], axis=1), np.stack([-s, c, nought], axis=1), along

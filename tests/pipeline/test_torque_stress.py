@@ -1,0 +1,55 @@
+"""The peak under torque of a part with holes, where these are solved alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from example_files import EXAMPLES
+
+from flexspline.geometry.keys import with_values
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import torque_stress
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.parts import AnalysisContext, PartModel
+from flexspline.pipeline.progress import Progress
+
+LONG = with_values(
+    load_design(EXAMPLES / "xb1-40.toml"),
+    {"shaft.grip_length_mm": 12.0, "shaft.segment[0].outer_diameter_mm": 36.0,
+     "shaft.bolt_circle_diameter_mm": 30.0},
+)  # fmt: skip
+"""Its holes end with the flange, 12 mm before the grip: what they change has died out there."""
+
+
+def shaft(folder: Path) -> PartModel:
+    return AnalysisContext(LONG, Cache(folder), Progress()).part("shaft")
+
+
+def test_holes_in_the_flange_leave_the_stress_far_from_them(tmp_path: Path) -> None:
+    with_holes = shaft(tmp_path)
+    without = replace(with_holes, part=with_holes.part.without_holes())
+    peak, known = (torque_stress.torque_field(part).peak for part in (with_holes, without))
+    # the meridian's is refined to 0.5 %; the whole field on the mesh of K has its peak beside the grip
+    assert peak.mises_MPa == pytest.approx(known.mises_MPa, rel=0.01)
+    assert peak.at_mm[2] == pytest.approx(known.at_mm[2], abs=with_holes.part.exclusion_mm)
+    assert not peak.at_excluded_border
+
+
+def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = shaft(tmp_path)
+    superposed = torque_stress.torque_field(part)
+
+    def fails(*asked: object, **more: object) -> None:
+        raise torque_stress.ComputationError("no field")
+
+    monkeypatch.setattr(torque_stress, "TorsionAtPoints", fails)
+    whole = torque_stress.torque_field(part)
+    assert len(whole.displacement) == len(superposed.displacement)
+    # both are u₀ + v, but for the meshes' errors
+    assert whole.displacement == pytest.approx(
+        superposed.displacement, abs=0.01 * abs(superposed.displacement).max()
+    )
