@@ -9,7 +9,7 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.axisymmetric.torsion_at_points import TorsionAtPoints
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.peak import stress_field, superposed_field
+from flexspline.fea.solid.peak import StressWithoutCuts, stress_field, superposed_field
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
@@ -85,7 +85,9 @@ def _superposed(model: PartModel, twisted: TwistedPart) -> SolidField | None:
                 twisted.meshed.mesh,
                 displacement * angle,
                 twisted.change * angle,
-                lambda points: without.stress(points) * angle,
+                StressWithoutCuts(
+                    lambda points: without.stress(points) * angle, without.field.places
+                ),
                 model.material,
                 _title(model),
                 sharp_edges(model, twisted.meshed),

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import torque_stress
@@ -23,18 +24,25 @@ LONG = with_values(
 """Its holes end with the flange, 12 mm before the grip: what they change has died out there."""
 
 
-def shaft(folder: Path) -> PartModel:
-    return AnalysisContext(LONG, Cache(folder), Progress()).part("shaft")
+ROUND = with_values(LONG, {"shaft.fillet_mm": 4.0})
+"""Its fillet is so large that the peak lies beside the edge of the grip."""
 
 
-def test_holes_in_the_flange_leave_the_stress_far_from_them(tmp_path: Path) -> None:
-    with_holes = shaft(tmp_path)
+def shaft(folder: Path, design: Design = LONG) -> PartModel:
+    return AnalysisContext(design, Cache(folder), Progress()).part("shaft")
+
+
+@pytest.mark.parametrize(("design", "at_border"), [(LONG, False), (ROUND, True)])
+def test_holes_in_the_flange_leave_the_stress_far_from_them(
+    tmp_path: Path, design: Design, at_border: bool
+) -> None:
+    with_holes = shaft(tmp_path, design)
     without = replace(with_holes, part=with_holes.part.without_holes())
     peak, known = (torque_stress.torque_field(part).peak for part in (with_holes, without))
-    # the meridian's is refined to 0.5 %; the whole field on the mesh of K has its peak beside the grip
+    # the meridian's is refined to 0.5 %; the whole field on the mesh of K is 11 and 23 % off
     assert peak.mises_MPa == pytest.approx(known.mises_MPa, rel=0.01)
     assert peak.at_mm[2] == pytest.approx(known.at_mm[2], abs=with_holes.part.exclusion_mm)
-    assert not peak.at_excluded_border
+    assert peak.at_excluded_border == known.at_excluded_border == at_border
 
 
 def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
