@@ -67,6 +67,17 @@ def end_points(path, units):
     return path
 
 
+def end_points_at_torques(path):
+    """Six units with more gap and a common change of zero with the torque: pairs of causes are likely."""
+    lines = ["unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec"]
+    for i in range(6):
+        for torque in (2, 6, 12):
+            half, middle = GAP / 2 + 20 + COMPLIANCE * torque, 3 * torque + (7 * i) % 5
+            lines.append(f"{i + 1},{torque},{half + middle:.2f},{middle - half:.2f}")
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 def specimens(path, names, keys):
     """Of four designs in turn: each design is a set of solves."""
     rng = np.random.default_rng(1)
@@ -107,6 +118,7 @@ RECORDS = {
     "example end points": lambda f: MEASURED / "size-40-end-points.csv",
     "end points, one far out": lambda f: end_points(f, [*LONG, "b", "c", "d"]),
     "end points of many": lambda f: end_points(f, [f"{i}" for i in range(60)]),
+    "end points at several torques": end_points_at_torques,
     "example specimens": lambda f: MEASURED / "xb1-40-specimens.csv",
     "specimens": lambda f: specimens(f, [f"S{i}" for i in range(8)], {"flexspline.length_mm": (30.0,) * 4}),
     "specimens with long names": lambda f: specimens(
