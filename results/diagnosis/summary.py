@@ -14,6 +14,7 @@ from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.shortage_words import shortage_words
 from flexspline.results.diagnosis.slope_words import slope_hint_words
 from flexspline.results.diagnosis.structure_words import structure_words
+from flexspline.results.diagnosis.tolerance_words import only_because
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
@@ -99,6 +100,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
             reason = "" if outcome.too_little is None else shortage_words(outcome.too_little)
             return f"The data are not sufficient: {reason}."
         case "consistent":
+            if diagnosis.specimens is not None and (why := only_because(diagnosis.specimens)):
+                return f"{AGREES[diagnosis.kind]} with the simulation {why}."
             noise = "" if points else " and the noise"
             return (
                 f"{AGREES[diagnosis.kind]} with the simulation within {_within(diagnosis)}{noise}."
