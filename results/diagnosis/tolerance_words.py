@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from flexspline.pipeline.diagnosis.specimens.decide import OVER_NULL_NATS
-from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
+from typing import TYPE_CHECKING
+
 from flexspline.results.diagnosis.words import plus_minus
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+    from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
 
 
 def within_tolerance(analysis: SpecimenAnalysis) -> list[tuple[Sensitivity, float]]:
@@ -20,6 +23,9 @@ def within_tolerance(analysis: SpecimenAnalysis) -> list[tuple[Sensitivity, floa
 
 def needed_tolerance(analysis: SpecimenAnalysis) -> list[tuple[Sensitivity, float]]:
     """Those without which the specimens would not agree; the modulus alone then explains less."""
+    # here: it loads the solvers, which a diagnosis with given stiffnesses does without
+    from flexspline.pipeline.diagnosis.specimens.decide import OVER_NULL_NATS
+
     gain = analysis.chosen.score - analysis.race.null_fit.score
     return within_tolerance(analysis) if gain > OVER_NULL_NATS else []
 
