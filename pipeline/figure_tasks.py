@@ -14,7 +14,7 @@ from typing import Any
 from flexspline.fea.types import Shortfall, Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.attempts import Attempts
-from flexspline.pipeline.ellipse_peak import ellipse_peak, half_seat_peak
+from flexspline.pipeline.ellipse_peak import ellipse_peak, full_seat_peak, half_seat_peak
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -78,6 +78,9 @@ class FigureTasks:
             ("half_seat_peak", half_seat_peak),
         ):
             self._tasks.append(partial(self._found, partial(_peak, name, partial(peak, rim))))
+        if not rim.axisymmetric:
+            whole = partial(_peak, "full_seat_peak", partial(full_seat_peak, rim))
+            self._tasks.append(partial(self._found, whole))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
         """All that was found; errors as of the tasks. `begun`: as of `results_of`."""
