@@ -158,11 +158,14 @@ def _with_magnitude(cause: NamedCause, only: str) -> str:
 def _rivals(causes: Sequence[NamedCause]) -> str:
     clauses = []
     for place, c in enumerate(causes):
-        named = {e.id for e in causes[:place] if c.id in e.alternatives}
+        named = {
+            e.id for e in causes[:place] if c.id in e.alternatives and e.own_units == c.own_units
+        }
         others = [other for other in c.alternatives if other not in named]
         if others:
             whom = joined(map(title_of, others), "or")
-            clauses.append(f"{cause_title(c)} cannot be distinguished from {whom}")
+            where = f"unit {listed(c.own_units, 'units')}: " if c.own_units else ""
+            clauses.append(f"{where}{cause_title(c)} cannot be distinguished from {whom}")
     clauses += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes
