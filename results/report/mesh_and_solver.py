@@ -49,7 +49,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield from shown_charts(content, roomy, "solver")
     stages = content.stage_seconds or {}
     if stages:
-        times = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
+        times = "; ".join(f"{name} {s:.1f} s" for name, s in stages.items())
         yield Paragraph(
             bold("Elapsed time:")
             + plain(
