@@ -23,6 +23,7 @@ from flexspline.results.diagnosis.words import (
     sure_words,
     title_of,
 )
+from flexspline.results.numbers import figures_text
 
 AGREES = {
     "sweep": "The measurement agrees",
@@ -131,7 +132,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
     if most.rms < STANDS_OUT * outcome.gain.noise_floor:
         return ""
     channel = channel_words(most.channel)
-    rms = f"{most.rms:.2g} {most.unit} rms"
+    rms = f"{figures_text(most.rms, 2)} {most.unit} rms"
     return f" No known cause explains the remaining structure ({channel}): {structure_words(most)}, {rms}."
 
 

@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.figures.diagnosis.captions import caption
+from flexspline.results.figures.diagnosis.contributions import write_contributions
 from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.panels import write_channels
@@ -55,6 +56,11 @@ def many(torque, row, unit):
     """Friction, drift, a gap that changes with temperature, an offset, position error."""
     drift, gap = 0.01 * row, np.sign(torque) * 0.05 * row
     return -3 * branch(row) + drift + gap + 6 * sin(2 * pi * ((row // 60) * 30) / 360)
+
+
+def softer_places(torque, row, unit):
+    """Stiffness that differs by 10 % with the wave generator's position."""
+    return 0.1 * COMPLIANCE * torque * np.cos(2 * np.radians(30 * (row // 60)))
 
 
 def end_points(path, units):
@@ -148,6 +154,20 @@ def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
     assert result.exit_code == 0, result.stderr
     assert len(found) >= 2
     assert [fault for figure in found for fault in faults(figure)] == []
+
+
+def test_the_title_of_an_axis_is_no_longer_than_the_axis(tmp_path: Path) -> None:
+    """Added compliance has the longest of a cause's panel."""
+    path = sweep(tmp_path / "m.csv", softer_places, cycles=12, columns=("input_angle_deg",))
+    shown = seen(diagnose_file(load_design(CUP), path, 31329, 43339))
+    assert shown is not None
+    with drawn_figures() as figures:
+        write_contributions(tmp_path / "c.png", shown)
+    assert_legible(figures)
+    titles = [axes.yaxis.label for axes in figures[0].axes]
+    assert any("added compliance" in title.get_text() for title in titles)
+    for axes in figures[0].axes:
+        assert axes.yaxis.label.get_window_extent().height <= axes.bbox.height
 
 
 def test_points_that_are_moved_are_said_to_be(tmp_path: Path) -> None:
