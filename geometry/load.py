@@ -121,7 +121,9 @@ def _by_the_rest(refused: DesignError, data: Mapping[str, Any]) -> DesignError |
             check(possible)
         except DesignError as further:
             if further.key == refused.key:
-                reason = f"{_what(refused)}{further.reason}"
+                # what another key would have to be is of the end that was tried, not of the value
+                range_ = further.reason.partition("; or make that ")[0]
+                reason = f"{_what(refused)}{range_}"
                 return DesignError(refused.key, refused.value, reason)
     return None
 

@@ -89,12 +89,15 @@ def stiffnesses(
     if flexspline and rim:
         tasks.add_rim(rim_part)
     figures = tasks.figures(begun)
+    wave_peak = figures.peaks.get("wave_generator_peak")
+    with_holes = wave_peak is not None and not wave_peak.stands_for
     return Stiffnesses(
         in_order(figures.K),
-        figures.peaks.get("wave_generator_peak"),
+        wave_peak,
         figures.peaks.get("half_seat_peak"),
         context.ring if flexspline else None,
         figures.missing,
+        figures.peaks.get("full_seat_peak") if with_holes else None,
     )
 
 

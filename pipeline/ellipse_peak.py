@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -71,16 +72,38 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
+    return _without_holes(
+        flexspline,
+        "half_seat_peak",
+        "wave generator, seat half as wide,",
+        lambda outline: with_narrow_seat(outline, NARROW_SEAT),
+    )
+
+
+def full_seat_peak(flexspline: PartModel) -> StressPeak:
+    """Return the ellipse's peak on the seat as wide as the ring, without holes, as `half_seat_peak` is.
+
+    `ellipse_peak` of a part with holes may be the solid model's, which differs from the meridian's by more
+    than the seat's width does.
+    """
+    return _without_holes(
+        flexspline,
+        "full_seat_peak",
+        "wave generator, bolt holes left out,",
+        lambda outline: outline,
+    )
+
+
+def _without_holes(
+    flexspline: PartModel, figure: str, title: str, seated: Callable[[Meridian], Meridian]
+) -> StressPeak:
     w0, exclusion_mm = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
-        narrow = with_narrow_seat(outline, NARROW_SEAT)
-        material = flexspline.material
-        return ellipse_stress(narrow, material, w0, exclusion_mm, SEAT_TOLERANCE, deadline).peak
+        material, seat = flexspline.material, seated(outline)
+        return ellipse_stress(seat, material, w0, exclusion_mm, SEAT_TOLERANCE, deadline).peak
 
-    return by_harmonics(
-        flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
-    )
+    return by_harmonics(flexspline, figure, title, make, w0_mm=w0)
 
 
 def _by_two_bodies(flexspline: PartModel) -> StressPeak | None:

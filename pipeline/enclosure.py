@@ -98,7 +98,7 @@ def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
         symmetry=names.symmetry,
         method=(
             f"from {names.less} to {names.more} (less material is never stiffer; the two K differ by "
-            f"{distance}); bounds of each by {whole.method}"
+            f"{distance}); the bounds of each come from: {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -126,12 +126,15 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     lower, upper = min(lower, upper), max(lower, upper)
     if half > enclosure.half_width:
         K = enclosure.K_Nm_per_rad
-        how = f"middle of the bounds; without these bounds it is known to ± {percent(half)} ({solid.method})"
+        how = (
+            "K is the middle of the bounds; without these bounds it is known to "
+            f"± {percent(half)} ({solid.method})"
+        )
     elif enclosure.lower_Nm_per_rad <= solid.K_Nm_per_rad <= enclosure.upper_Nm_per_rad:
         K, how = solid.K_Nm_per_rad, solid.method
     else:
         K = min(max((lower + upper) / 2, enclosure.lower_Nm_per_rad), enclosure.upper_Nm_per_rad)
-        how = f"middle of what both bounds have in common: {solid.method}"
+        how = f"K is the middle of what both bounds have in common: {solid.method}"
     if narrow:
         lower, upper = enclosure.bounds_Nm_per_rad
     return replace(

@@ -32,6 +32,8 @@ class Stiffnesses:
     ----------
     solved : by the name of the figure, in the order of `FIGURES`.
     half_seat_peak : the wave generator's peak on a seat half as wide as the ring.
+    full_seat_peak : the same on the whole seat, bolt holes left out as in `half_seat_peak`; of a part with
+        holes alone.
     ring : the plain ring that stood for the teeth in all K_b, None where none were drawn.
     missing : why a figure that was asked for is not there, by its name.
     """
@@ -41,6 +43,7 @@ class Stiffnesses:
     half_seat_peak: StressPeak | None = None
     ring: EquivalentRing | None = None
     missing: Mapping[str, Shortfall] = field(default_factory=dict)
+    full_seat_peak: StressPeak | None = None
 
     def __getitem__(self, name: str) -> Stiffness:
         """The figure of that name.

@@ -10,7 +10,7 @@ from flexspline.geometry.errors import plain_number
 from flexspline.pipeline.backlash import STD_KEY
 from flexspline.results.doubt import NOT_STATED, stated_only
 from flexspline.results.numbers import grouped
-from flexspline.results.peaks import BORDER, MEANING, marked
+from flexspline.results.peaks import BORDER, HALF_SEAT, MEANING, WITHOUT_HOLES, marked
 from flexspline.results.quantities import QUANTITIES
 from flexspline.results.terminal import prose, row
 
@@ -44,6 +44,9 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
             border = marked(record, entry.key)
             at_border |= bool(border)
             mark = border or notes.get(entry.key)
+            if entry.key == HALF_SEAT and WITHOUT_HOLES in record:
+                whole = f"without bolt holes; {entry.with_unit(record[WITHOUT_HOLES])} on the whole seat"
+                mark = "; ".join(filter(None, (whole, mark)))
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
             if entry.key == STD_KEY:
                 shown += stated_only(record.get("backlash_std_by_source_arcsec", {}))

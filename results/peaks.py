@@ -7,12 +7,15 @@ from typing import Any
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.material import Material
-from flexspline.pipeline.stress_limits import share_of_limit
+from flexspline.pipeline.stress_limits import ON_HALF_SEAT, share_of_limit
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""
+HALF_SEAT = f"{ON_HALF_SEAT}_mises_MPa"
+WITHOUT_HOLES = "wave_generator_peak_without_holes_mises_MPa"
+"""Of result.json: the peak on the whole seat with which that on half of it is compared."""
 MEANING = (
     "the stress still rises towards this edge, so the value depends on the excluded distance and is not a "
     "measure of the part's strength"
@@ -35,6 +38,19 @@ def marked(figures: Mapping[str, Any], key: str) -> str:
         return ""
     twice = figures.get(f"{name}_mises_at_twice_excluded_MPa")
     return border_note(figures[f"{name}_excluded_mm"], twice)
+
+
+def half_seat_words(
+    half_MPa: float, at_border: bool, without_holes_MPa: float | None, between: str = "with"
+) -> str:
+    """The peak on a seat half as wide, and that without bolt holes where the part's has them."""
+    unit = quantity(HALF_SEAT)
+    text = f"{unit.with_unit(half_MPa)} {between} a seat half as wide"
+    if at_border:
+        text += f" ({BORDER})"
+    if without_holes_MPa is None:
+        return text
+    return f"without bolt holes {unit.with_unit(without_holes_MPa)}, and {text}"
 
 
 def limit_note(peak: StressPeak, material: Material) -> str:

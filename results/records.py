@@ -10,10 +10,11 @@ from flexspline import __version__
 from flexspline.geometry.errors import readable
 from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
-from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.stress_limits import ON_HALF_SEAT, PEAK_OF
 from flexspline.results.gear_quantities import GEAR_QUANTITIES
 from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.limit_words import reason
+from flexspline.results.peaks import WITHOUT_HOLES
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -46,8 +47,9 @@ def stiffness_record(design: Design, stiffnesses: Stiffnesses, wall_s: float) ->
         record["stress_excluded"] = stiffnesses.wave_generator_peak.excluded
     if stiffnesses.half_seat_peak is not None:
         record["wave_generator_seat_width_mm"] = design.flexspline.ring_width_mm
-        half = stiffnesses.half_seat_peak.mises_MPa
-        record["wave_generator_peak_half_seat_mises_MPa"] = half
+        record |= peak_record(ON_HALF_SEAT, stiffnesses.half_seat_peak)
+    if stiffnesses.full_seat_peak is not None:
+        record[WITHOUT_HOLES] = stiffnesses.full_seat_peak.mises_MPa
     if stiffnesses.ring is not None:
         record |= _ring(design, stiffnesses.ring)
     if stiffnesses.has_sum(design):

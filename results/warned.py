@@ -21,6 +21,7 @@ PEAK_KEYS = {
     **{case: f"{peak}_mises_MPa" for case, peak in PEAK_OF.items()},
     ON_ELLIPSE: f"{ON_ELLIPSE}_mises_MPa",
     "half_seat_peak": f"{ON_HALF_SEAT}_mises_MPa",
+    "full_seat_peak": f"{ON_HALF_SEAT}_mises_MPa",
 }
 """Keys in result.json of peak stresses, by the names under which they are solved; all else is a stiffness."""
 

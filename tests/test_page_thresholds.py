@@ -220,6 +220,7 @@ STATED = [
              wrong_readings.GEAR_C.low, wrong_readings.GEAR_C.high, wrong_readings.LEAP_K),
     measured("over the torque below {} % of the wind-up", 100 * bend.NUMERICAL_SHARE),
     measured("if a slope {} times softer", slope_hints.AS_GEAR),
+    measured("of another unit to within about {} %", 100 * slope_hints.NEAR_FACTOR),
     measured("by {} of the causes' contribution there", doubt.BEYOND_THE_EDGE),
     measured("The time from 0 to T_L is {} minutes, the temperature is {} °C",
              extended_backlash.RAMP_S / 60, prediction.REFERENCE_C),

@@ -191,8 +191,9 @@ class _RevolvedLobes:
         bounds, missing = self.estimate.at_given_torque(self.missing), self.missing
         last = 2 * (len(self.solution.energies) - 1)
         method = (
-            f"even Fourier harmonics 0 to {last}, the rest below {percent(missing)} of K; recovery estimate"
-            f" (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, scaled by {self.estimate.scale:.2f}"
+            f"even Fourier harmonics 0 to {last}, all others change K by less than {percent(missing)}; "
+            f"recovery estimate (Zienkiewicz-Zhu) on {len(self.estimate.meshes)} meshes, "
+            f"scaled by {self.estimate.scale:.2f}"
         )
         harmonics = tuple(energy / sum(self.solution.energies) for energy in self.solution.energies)
         K = self.estimate.stiffness(bounds, "axisymmetric", "body of revolution", method, shortfall)

@@ -71,7 +71,7 @@ class FullTorsion:
 
     def method(self, error: str) -> str:
         """As `FieldSolver.method`."""
-        return f"{error}; K = finest mesh less the scaled estimate"
+        return f"{error}; K is that of the finest mesh minus the scaled estimate"
 
 
 @dataclass

@@ -76,8 +76,9 @@ SHOWS_STRUCTURE = {
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
     "record: the pause changes an effect of time, but not an effect of the number of cycles",
-    "cycle": "if the gear was clamped again between cycles, give each clamping a name in the column unit and "
-    f"diagnose again; otherwise {FURTHER_CYCLES} without touching the rig",
+    "cycle": "record the temperature with every row, if the file has none; if the gear was clamped again "
+    f"between cycles, give each clamping a name in the column unit and diagnose again; otherwise "
+    f"{FURTHER_CYCLES} without touching the rig",
     "unit": "measure the units again in another order, and clamp each one again",
 }
 """What shows structure in a channel, everything else held."""

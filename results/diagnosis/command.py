@@ -90,15 +90,21 @@ def diagnose(
 ) -> None:
     """Why measured data differ from the simulation: the causes."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
+    given = [name for name, value in (("--Kb", kb), ("--Ke", ke)) if value is not None]
+    if against == GEAR and given:
+        tell(
+            f"flexspline: --against {GEAR}: leave out {' and '.join(given)}: the curve comes from the drawing"
+        )
+        raise typer.Exit(REFUSED)
     with answered(design, AGAIN):
         from flexspline.pipeline.second_process import second_process
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
         from flexspline.results.figures.diagnosis.captions import CAPTIONS
 
         job = begin(design, out, of_diagnosis(CAPTIONS))
-        given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
+        stated = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
         with second_process():
-            text = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
+            text = diagnose_and_write(job, measured, stated, json, counts_per_turn, against == GEAR)
         show(text, json)
 
 

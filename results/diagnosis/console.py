@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.channels import channel_words, left_out_words
 from flexspline.results.diagnosis.data_used import calibrated_sentences, own_slope
@@ -34,7 +35,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
     lines += prose(f"{verdict_heading(diagnosis)} ({outcome.verdict}). {summary(diagnosis)}")
-    cells = [(capital(cause_title(c)), magnitude_words(c), sure_words(c)) for c in outcome.causes]
+    cells = [(_titled(c), magnitude_words(c), sure_words(c)) for c in outcome.causes]
     widths = [
         max(len(cell) for cell in column) + BETWEEN for column in list(zip(*cells, strict=True))[:2]
     ]
@@ -63,6 +64,12 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",))
     lines.append(f"files in {folder}")
     return "\n".join(lines)
+
+
+def _titled(cause: NamedCause) -> str:
+    """With the units that alone have it, or have it in this size."""
+    own = f", unit {listed(cause.own_units, 'units')}" if cause.own_units else ""
+    return f"{capital(cause_title(cause))}{own}"
 
 
 def _errors(outcome: DiagnosisOutcome) -> list[str]:

@@ -30,6 +30,8 @@ NOT_NARROWED = "this record does not reduce the uncertainty"
 """Remark on a value that the record determines no better than the simulation."""
 AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
 """Rows that were not used."""
+SHORTENED = "values"
+"""What a long record is averaged to; some of them are single rows, so not all are means."""
 
 
 def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -164,7 +166,7 @@ def rows_used(prepared: PreparedSweep) -> str:
     """How many of the rows identify causes."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
     words = f"{grouped(counts.used, 0)} of {grouped(counts.total, 0)}"
-    return words if averaging is None else f"{words} means"
+    return words if averaging is None else f"{words} {SHORTENED}"
 
 
 def kinds_left_out(counts: RowCounts) -> list[tuple[str, int]]:
@@ -186,10 +188,11 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
         left = averaging.rows_read - averaging.rows_averaged
         notes.append(
             f"{grouped(averaging.rows_read, 0)} rows were read and averaged to "
-            f"{grouped(counts.total, 0)} means of neighbouring rows; "
-            f"{grouped(left, 0)} rows (spikes, surplus cycles) were left out of the means"
+            f"{grouped(counts.total, 0)} {SHORTENED}: means of neighbouring rows, and single rows where "
+            f"backlash is crossed and at corners of the torque; {grouped(left, 0)} rows (spikes, surplus "
+            "cycles) were left out"
         )
-    what = "rows" if averaging is None else "means"
+    what = "rows" if averaging is None else SHORTENED
     notes.append(
         f"{rows_used(prepared)}{' rows' * (averaging is None)} were used for identification"
     )

@@ -31,6 +31,7 @@ from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.position_notes import position_notes
 from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
 from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes, zero_notes
+from flexspline.results.diagnosis.tolerance_words import modulus_alone, within_tolerance
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
@@ -282,15 +283,17 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
         )
     if YOUNGS_MODULUS not in chosen.causes:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
-        lines.append(f"Young's modulus calibrated by {change} % within its uncertainty")
-    for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
-        s = term.sensitivity
-        if s is not None and term.owner not in chosen.causes:
-            change = f"{value:+.2g}".replace("-", "−")
-            lines.append(
-                f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm (ISO "
-                "2768-m) and therefore not a finding"
-            )
+        dimensions = within_tolerance(analysis)
+        beside = f", beside {dimensions[0][0].key}" if dimensions else ""
+        lines.append(f"Young's modulus calibrated by {change} % within its uncertainty{beside}")
+    for s, value in within_tolerance(analysis):
+        change = f"{value:+.2g}".replace("-", "−")
+        lines.append(
+            f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm (ISO "
+            "2768-m) and therefore not a finding"
+        )
+    if alone := modulus_alone(analysis):
+        lines.append(alone)
     how = (
         "solved with its holes"
         if analysis.with_holes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexspline.pipeline.diagnosis.absurd_size import given_words
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
+from flexspline.pipeline.diagnosis.slope_hints import NEAR_FACTOR, SlopeRatio, slope_hint
 from flexspline.pipeline.diagnosis.structure import FarSlope, NegativeGap
 
 
@@ -34,7 +34,8 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
         )
     if hint.units:
         units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
-        return f" The slope is {times} than simulated, as with {units}: check the units."
+        near = f"to within about {100 * NEAR_FACTOR:g} %"
+        return f" The slope is {times} than simulated, {near} as with {units}: check the units."
     if hint.whole_gear:
         return (
             f" The slope is {times} than flexspline and shaft in series. If a complete gear was measured, its"

@@ -14,6 +14,7 @@ from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.shortage_words import shortage_words
 from flexspline.results.diagnosis.slope_words import slope_hint_words
 from flexspline.results.diagnosis.structure_words import structure_words
+from flexspline.results.diagnosis.tolerance_words import only_because
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
@@ -22,6 +23,7 @@ from flexspline.results.diagnosis.words import (
     sure_words,
     title_of,
 )
+from flexspline.results.numbers import figures_text
 
 AGREES = {
     "sweep": "The measurement agrees",
@@ -99,6 +101,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
             reason = "" if outcome.too_little is None else shortage_words(outcome.too_little)
             return f"The data are not sufficient: {reason}."
         case "consistent":
+            if diagnosis.specimens is not None and (why := only_because(diagnosis.specimens)):
+                return f"{AGREES[diagnosis.kind]} with the simulation {why}."
             noise = "" if points else " and the noise"
             return (
                 f"{AGREES[diagnosis.kind]} with the simulation within {_within(diagnosis)}{noise}."
@@ -128,7 +132,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
     if most.rms < STANDS_OUT * outcome.gain.noise_floor:
         return ""
     channel = channel_words(most.channel)
-    rms = f"{most.rms:.2g} {most.unit} rms"
+    rms = f"{figures_text(most.rms, 2)} {most.unit} rms"
     return f" No known cause explains the remaining structure ({channel}): {structure_words(most)}, {rms}."
 
 
@@ -155,11 +159,14 @@ def _with_magnitude(cause: NamedCause, only: str) -> str:
 def _rivals(causes: Sequence[NamedCause]) -> str:
     clauses = []
     for place, c in enumerate(causes):
-        named = {e.id for e in causes[:place] if c.id in e.alternatives}
+        named = {
+            e.id for e in causes[:place] if c.id in e.alternatives and e.own_units == c.own_units
+        }
         others = [other for other in c.alternatives if other not in named]
         if others:
             whom = joined(map(title_of, others), "or")
-            clauses.append(f"{cause_title(c)} cannot be distinguished from {whom}")
+            where = f"unit {listed(c.own_units, 'units')}: " if c.own_units else ""
+            clauses.append(f"{where}{cause_title(c)} cannot be distinguished from {whom}")
     clauses += [
         f"{cause_title(c)}, {magnitude_words(c)}, is suspected but not significant"
         for c in causes

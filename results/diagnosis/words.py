@@ -148,7 +148,11 @@ def calibrated_words(gain: Gain) -> str:
 def free_words(outcome: DiagnosisOutcome) -> str:
     """Of a record without causes, how its calibration may move so that it is the one stated; "" else."""
     gain = outcome.gain
-    if gain is None or gain.held_out.each or outcome.verdict != "consistent":
+    if gain is None or outcome.verdict != "consistent":
+        return ""
+    if gain.unit == "%" and gain.rmse_after != gain.rmse_calibrated:
+        return "modulus and one dimension within its tolerance fitted"
+    if gain.held_out.each:
         return ""
     return "stiffness and gap calibrated without this limit"
 

@@ -55,6 +55,7 @@ def report_content(
         shaft_peak=peaks.get("shaft_torque"),
         wave_generator_peak=peaks.get("wave_generator", stiffnesses.wave_generator_peak),
         half_seat_peak=stiffnesses.half_seat_peak,
+        full_seat_peak=stiffnesses.full_seat_peak,
         linear_limit=result.linear_limit,
         ring=stiffnesses.ring,
         gear=result.gear,

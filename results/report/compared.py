@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from flexspline.geometry.listed import joined
@@ -28,10 +29,10 @@ def _facts(diagnosis: Diagnosis) -> list[list[str]]:
     if isinstance(m, Sweep):
         return [["Kind", "torque sweep, wave generator locked"], *_sweep(m)]
     if isinstance(m, EndPoints):
-        kind, count = "angles at both ends of the torque", f"{len(m.unit)}"
+        kind, count = "angles at both ends of the torque", _counted(m.unit)
         return [["Kind", kind], ["File", m.path.name], ["Units", count]]
     if isinstance(m, Specimens):
-        kind, count = "stiffness of several parts", f"{len(m.specimen)}"
+        kind, count = "stiffness of several parts", _counted(m.specimen)
         facts = [["Kind", kind], ["File", m.path.name], ["Specimens", count]]
         return (
             [*facts, ["Varied", ", ".join(map(channel_words, m.overrides))]]
@@ -39,6 +40,12 @@ def _facts(diagnosis: Diagnosis) -> list[list[str]]:
             else facts
         )
     return [["File", str(getattr(m, "path", ""))]]
+
+
+def _counted(names: Sequence[str]) -> str:
+    """How many different names, and how many rows where some have several."""
+    count, rows = len(set(names)), len(names)
+    return f"{count}" if count == rows else f"{count} ({rows} rows)"
 
 
 def _sweep(sweep: Sweep) -> list[list[str]]:

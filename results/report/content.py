@@ -38,7 +38,8 @@ class ReportContent:
     pictures : PNG files by the names that `results.pictures` gives them; one that is not there is left out.
     missing_pictures : why, by the same names, of those that could not be drawn.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
-    half_seat_peak : the ellipse's on a seat half as wide as the ring.
+    half_seat_peak : the ellipse's on a seat half as wide as the ring, without bolt holes; full_seat_peak : on
+        the whole seat without them, where wave_generator_peak is that with holes.
     linear_limit : beyond which torque the figures are not valid.
     ring : the plain ring that stands for drawn teeth, None where none are drawn.
     gear : the whole gear's curve; `gear_missing`: why there is none.
@@ -60,6 +61,7 @@ class ReportContent:
     shaft_peak: StressPeak | None = None
     wave_generator_peak: StressPeak | None = None
     half_seat_peak: StressPeak | None = None
+    full_seat_peak: StressPeak | None = None
     linear_limit: LinearLimit | None = None
     ring: EquivalentRing | None = None
     warnings: tuple[str, ...] = ()

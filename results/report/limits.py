@@ -132,10 +132,16 @@ def _ellipse(content: ReportContent) -> str:
     if half is None:
         return text
     stress = quantity("wave_generator_peak_half_seat_mises_MPa")
-    change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
+    full = content.full_seat_peak or content.wave_generator_peak
+    change = 100 * (half.mises_MPa / full.mises_MPa - 1)
+    digits = 0 if abs(change) >= 1 else 1
+    with_holes = content.full_seat_peak is not None
+    instead = f" instead of {stress.with_unit(full.mises_MPa)}" if with_holes else ""
+    border = f", {BORDER}" if half.at_excluded_border else ""
     return (
         f"{text} With a seat half as wide, {width / 2:g} mm in the middle of the ring, the peak would be "
-        f"{stress.with_unit(half.mises_MPa)} ({signed(change, 0)} %; without bolt holes)."
+        f"{stress.with_unit(half.mises_MPa)}{instead} ({signed(change, digits)} %; "
+        f"{'both ' if with_holes else ''}without bolt holes{border})."
     )
 
 

@@ -8,9 +8,18 @@ from itertools import chain
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
-from flexspline.results.report.document import Block, Column, Heading, Paragraph, Picture, Table
+from flexspline.results.report.document import (
+    Block,
+    Bullets,
+    Column,
+    Heading,
+    Paragraph,
+    Picture,
+    Table,
+)
 from flexspline.results.report.picture_blocks import shown, shown_charts
 from flexspline.results.report.spans import NBSP, Words, bold, plain, symbol, worded
+from flexspline.results.sentences import capital
 
 GUARANTEED = bounds_kind(True)
 
@@ -37,11 +46,16 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         ),
         caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
         "“energy – work” is the relative difference of the stiffness from strain energy and from the "
-        f"work of torque or loads; “{tables.UNCHECKED}” means not checked.",
+        "work of torque or loads. The residual is relative: a direct solver "
+        "leaves rounding errors, an iterative one stops earlier. "
+        f"“{tables.UNCHECKED}” means not checked.",
     )  # fmt: skip
     for method, kind in dict.fromkeys((s["method"], s["kind"]) for s in solves):
         alike = [s for s in solves if (s["method"], s["kind"]) == (method, kind)]
-        yield Paragraph(_bounds_of(content, method, alike))
+        steps, sure = steps_of(method), _how_sure(content, alike)
+        yield Paragraph(sure if len(steps) > 1 else sure + plain(f" {steps[0]}"))
+        if len(steps) > 1:
+            yield Bullets(tuple(map(plain, steps)), small=True)
     if not any(len(s.levels) > 1 for s in (content.K_b, content.K_e)):
         yield Paragraph(
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
@@ -49,7 +63,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield from shown_charts(content, roomy, "solver")
     stages = content.stage_seconds or {}
     if stages:
-        times = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
+        times = "; ".join(f"{name} {s:.1f} s" for name, s in stages.items())
         yield Paragraph(
             bold("Elapsed time:")
             + plain(
@@ -78,18 +92,35 @@ def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
     )
 
 
-def _bounds_of(content: ReportContent, method: str, these: list[tables.PrintedRow]) -> Words:
+def steps_of(method: str) -> tuple[str, ...]:
+    """The steps of a method, each a sentence: semicolons stand between them, and within brackets.
+
+    >>> steps_of("by energy (above; below); K is the upper one")
+    ('By energy (above; below).', 'K is the upper one.')
+    """
+    steps, depth = [""], 0
+    for letter in method:
+        depth += {"(": 1, ")": -1}.get(letter, 0)
+        if letter == ";" and depth == 0:
+            steps.append("")
+        else:
+            steps[-1] += letter
+    return tuple(f"{capital(step.strip())}." for step in steps)
+
+
+def _how_sure(content: ReportContent, these: list[tables.PrintedRow]) -> Words:
+    """Whose bounds they are, whether they are proven, and whether they are as narrow as was asked for."""
+    proven = these[0]["kind"] == GUARANTEED
     text = (
-        bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
+        bold("Bounds of ")
+        + _listed(s["symbol"] for s in these)
+        + bold(": ")
+        + plain("These bounds are proven. " if proven else "This is an estimate, not a guarantee. ")
+        + plain(
+            f"The requested tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+        )
     )
-    if these[0]["kind"] == GUARANTEED:
-        text += plain("These bounds are proven. ")
-    else:
-        text += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
-    text += plain(
-        f"The requested tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
-    )
     return text + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 
 

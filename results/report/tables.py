@@ -9,7 +9,7 @@ from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import as_stated, spread_text
 from flexspline.results.limit_words import beside_figure, stiffness_notes
 from flexspline.results.numbers import beyond, grouped, with_power
-from flexspline.results.peaks import BORDER, border_note, limit_note
+from flexspline.results.peaks import BORDER, border_note, half_seat_words, limit_note
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
@@ -147,8 +147,11 @@ def _stress_rows(content: ReportContent) -> list[PrintedRow]:
             if not (passed and peak.at_excluded_border):
                 remarks.append(limit_note(peak, content.design.part(part).material))
             if entry is wave and content.half_seat_peak is not None:
-                half = entry.with_unit(content.half_seat_peak.mises_MPa)
-                remarks.append(f"seat as wide as the ring; {half} with a seat half as wide")
+                half, full = content.half_seat_peak, content.full_seat_peak
+                words = half_seat_words(
+                    half.mises_MPa, half.at_excluded_border, full.mises_MPa if full else None
+                )
+                remarks.append(f"seat as wide as the ring; {words}")
             rows.append(
                 _row(entry, peak.mises_MPa, "")
                 | {"note": "; ".join(remarks), "alarm": "; ".join(passed)}

@@ -38,23 +38,23 @@ def totals_and_terms(content: ReportContent) -> Words:
     return (
         text
         + symbol(_FIRST.symbol)
-        + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
+        + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} is that of the whole gear (")
         + ref("gear")
+        + plain("): with teeth, rim contact and bearing, but without clearance, as in catalogues. ")
+        + _with_clearances(curve)
         + plain(
-            ") also includes teeth, rim contact and bearing, but no clearance, as in catalogues. "
-        )
-        + _whole_twist(curve)
-        + plain(
-            "Lost motion includes the clearances"
-            + (", but no free angle remains here" if curve.free_angle_arcsec == 0 else "")
+            (", but no free angle remains here" if curve.free_angle_arcsec == 0 else "")
             + ". Bolts, housing and friction are not included."
         )
     )
 
 
-def _whole_twist(curve: GearCurve) -> Words:
-    """With the clearances, between the torques of the sum; nothing where its terms were not asked for."""
+def _with_clearances(curve: GearCurve) -> Words:
+    """What has the clearances in it: lost motion, and where its terms were asked for the twist between the
+    torques of the sum."""
     if not curve.terms_arcsec:
-        return ()
+        return plain("Lost motion includes clearances")
     total = _SUM.with_unit(curve.terms_arcsec["total"])
-    return worded(f"The gear twists by {total} between ± T_L. ")
+    return worded(
+        f"The gear's twist between ± T_L, {total}, and its lost motion include clearances"
+    )

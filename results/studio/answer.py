@@ -26,7 +26,7 @@ from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
 from flexspline.results.limit_words import load_beyond
 from flexspline.results.numbers import figures_text
-from flexspline.results.peaks import BORDER, marked
+from flexspline.results.peaks import BORDER, WITHOUT_HOLES, half_seat_words, marked
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
 from flexspline.results.style import PALETTE
@@ -165,7 +165,8 @@ def _peak(name: str, figures: ComputedFigures, design: Design) -> Message:
     row["over"] = any(limits_passed(design, {name: peak}))
     half = f"{name}_half_seat_mises_MPa"
     if half in figures:
-        narrow = f"on a seat half as wide {quantity(half).with_unit(figures[half])}"
+        border = bool(figures.get(f"{name}_half_seat_at_excluded_border"))
+        narrow = half_seat_words(figures[half], border, figures.get(WITHOUT_HOLES), "on")
         row["more"] = "; ".join(filter(None, [row.get("more"), narrow]))
     return row
 

@@ -16,11 +16,15 @@ VIEW = "best_stress"
 
 @dataclass(frozen=True)
 class BestStress:
-    """What was drawn; `missing` says in one line why something was not, "" if all was."""
+    """What was drawn; `missing` says in one line why something was not, "" if all was.
+
+    `peak_MPa`: of what is drawn, as `flexspline run` finds it; the study's own model may find another.
+    """
 
     picture: Path | None = None
     view: bytes | None = None
     missing: str = ""
+    peak_MPa: float | None = None
 
     @property
     def views(self) -> dict[str, bytes]:
@@ -42,8 +46,8 @@ def draw_best_stress(folder: Path, best: BestField | None) -> BestStress:
             write_bytes(path, process.draw(write_ellipse_picture, best.field, best.w0_mm))
             picture = path
             view = process.draw(write_turning_ellipse, best.field, best.w0_mm)
-            return BestStress(path, view)
+            return BestStress(path, view, peak_MPa=best.field.peak.mises_MPa)
         except NotDrawnError as error:
             if picture is None:
                 path.unlink(missing_ok=True)
-            return BestStress(picture, None, str(error))
+            return BestStress(picture, None, str(error), best.field.peak.mises_MPa)

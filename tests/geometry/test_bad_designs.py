@@ -249,3 +249,13 @@ def test_no_file_directory_and_pipe_are_refused(tmp_path: Path) -> None:
     with pytest.raises(DesignFileError) as caught:
         load_design("nul\x00 and\nnewline.toml")
     assert str(caught.value).isprintable()
+
+
+def test_a_length_beyond_every_range_is_not_told_how_thick_its_wall_would_have_to_be(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "long.toml"
+    path.write_text(changed_text("xb1-40", {"flexspline.length_mm": "1e400"}), encoding="utf-8")
+    with pytest.raises(DesignError, match=r"from 9\.751 to 1200 mm") as refused:
+        load_design(path)
+    assert "at least" not in str(refused.value)

@@ -19,6 +19,7 @@ from flexspline.results.console import table
 from flexspline.results.peaks import BORDER
 from flexspline.results.records import peak_record, stiffness_record
 from flexspline.results.renders.picture_elements import stress_note
+from flexspline.results.report.limits import assumptions
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.tables import answers
@@ -165,3 +166,41 @@ def test_the_page_hears_of_a_torque_beyond_the_linear_model() -> None:
     assert "load.torque_Nm = 5000 exceeds" in line
     assert message(design(), found)["beyond"] == []
     assert "beyond" not in message(heavy, {})  # nothing is known of K yet
+
+
+def test_the_half_seat_is_compared_with_the_whole_seat_of_the_same_model() -> None:
+    """A solid peak of 234 MPa; without holes 248 MPa, and 247 MPa on half the seat: not 6 % more."""
+    said = content(
+        wave_generator_peak=peak(234.0, border=True),
+        half_seat_peak=peak(247.3, border=True),
+        full_seat_peak=peak(247.9, border=True),
+    )
+    (words,) = (text for name, text in assumptions(said) if name == "Wave generator")
+    assert (
+        "247\u202fMPa instead of 248\u202fMPa (−0.2 %; both without bolt holes, at excluded"
+        in words
+    )
+    (note,) = (row["note"] for row in answers(said) if row["value"] == "234")
+    assert (
+        "without bolt holes 248\u202fMPa, and 247\u202fMPa with a seat half as wide (at exc" in note
+    )
+
+
+def test_the_half_seat_is_marked_where_every_peak_is(tmp_path: Path) -> None:
+    found = Stiffnesses(
+        {"K_b": K_B, "K_e": K_E},
+        wave_generator_peak=peak(234.0, border=False),
+        half_seat_peak=peak(247.3, border=True),
+        full_seat_peak=peak(247.9, border=True),
+    )
+    record = {"design": "", **stiffness_record(limited(500.0), found, 1.0)}
+    assert record["wave_generator_peak_half_seat_mises_MPa"] == 247.3
+    assert record["wave_generator_peak_half_seat_at_excluded_border"] is True
+    assert record["wave_generator_peak_half_seat_excluded_mm"] == 0.4
+    assert record["wave_generator_peak_without_holes_mises_MPa"] == 247.9
+    said = table(record, tmp_path)
+    (line,) = (line for line in said.splitlines() if "seat half as wide" in line)
+    assert "248\u202fMPa on the whole seat" in line
+    assert BORDER in line
+    row = message(limited(500.0), record)["peaks"][0]
+    assert "on a seat half as wide (at excluded border)" in row["more"]

@@ -63,7 +63,7 @@ class Creep(Cause):
     """Metal creeps little; a few per cent of the twist a decade are grease, adhesive and bolts."""
     ratio = (
         "in % of the elastic twist: what the last decade of time adds in a hold of the record's median "
-        "length"
+        "length, after a sudden load; after a ramp it is less"
     )
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
@@ -130,7 +130,10 @@ class Creep(Cause):
         return (lags(by_known_ways(history), history, tau) @ weight)[:, None]
 
     def magnitude(self, elements: Sequence[Element], rig: FitContext) -> float:
-        """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""
+        """Growth over the last decade of a hold of the record's typical length, % of elastic twist.
+
+        The torque is a step: no ramp takes part of the growth before the hold begins.
+        """
         grown = 0.0
         for e in elements:
             tau, weight = self._kelvin(e.shape)

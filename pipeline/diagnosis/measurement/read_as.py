@@ -14,7 +14,8 @@ class ReadAs:
     Attributes
     ----------
     columns : those that are read, in the file's order. ignored : heads of the others. empty : heads of
-        columns without any value. encoding : "UTF-8", "UTF-16", "xlsx" or a code page.
+        columns without any value. heads : of all columns, in the file's order.
+    encoding : "UTF-8", "UTF-16", "xlsx" or a code page.
     separator : in words.
     decimal_mark : "." or ",". head_line : of the file. unit_row : whether units stand below the head.
     began : the first row's date and time, "" where time is no date. sha256 : of the file's bytes.
@@ -33,15 +34,11 @@ class ReadAs:
     sha256: str = ""
     footer: tuple[int, ...] = ()
     heads_again: tuple[int, ...] = ()
+    heads: tuple[str, ...] = ()
 
     def column(self, quantity: str) -> ReadColumn | None:
         """The first column of a quantity, such as torque; None where no file has one."""
         return next((c for c in self.columns if c.name.startswith(quantity)), None)
-
-    @property
-    def heads(self) -> tuple[str, ...]:
-        """All columns, by the file's names; those that are read first."""
-        return (*(c.head for c in self.columns), *self.ignored)
 
     @property
     def as_ours(self) -> bool:

@@ -149,7 +149,7 @@ def table_of(
             columns, tuple(h for i, h in enumerate(grid.head) if i not in used and h),
             tuple(c.head for c in empty), grid.encoding, grid.separator_name, mark, grid.head_line,
             bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(), grid.footer,
-            grid.heads_again,
+            grid.heads_again, tuple(grid.head),
         ),
         lost,
     )  # fmt: skip

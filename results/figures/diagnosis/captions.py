@@ -41,12 +41,14 @@ CAPTIONS = {
         in: {{where}}. The figure of the model's parts shows this structure. {DRAWN_APART}""",
     "envelope": f"""
         The angle between −T and +T of each unit. The band contains {COVERED_WORDS} units that agree
-        with the design. The design's clearances and stiffness do not explain a unit beyond the band.""",
+        with the design. The design's clearances and stiffness do not explain a unit beyond the band. Of
+        several torques, each unit's row shows the one of its largest deviation.""",
     "positions": """
         Positions of the two ends of each unit. In the symmetric simulation every mid position is zero. Each
         unit's angle zero is unknown, so a different mid position alone proves nothing.""",
     "rivals": """
-        Top: the odds of the explanations; explanations with bars of similar length cannot be distinguished.
+        Top: the odds of the explanations; explanations with bars of similar length cannot be distinguished,
+        and those below 0.5 % are not drawn.
         Bottom, if shown: how well a further measurement would distinguish them.""",
     "stiffness": """
         Measured stiffness of each specimen as deviation from the simulation. If the identified cause is

@@ -19,6 +19,7 @@ from flexspline.results.diagnosis.words import (
     title_of,
 )
 from flexspline.results.figures.diagnosis.seen import PlotChannel, SweepPictureData
+from flexspline.results.numbers import figures_text
 from flexspline.results.sentences import capital
 
 SHORT = 55
@@ -59,7 +60,7 @@ def _unnamed(
 
     What is more than a `trace`, which noise hides, is not named for a reason that the verdict gives.
     """
-    size = f"{rms_arcsec:.2g} arcsec rms"
+    size = f"{figures_text(rms_arcsec, 2)} arcsec rms"
     if owner in known_causes():
         why = ["smaller than the noise:", "too little to name"]
         if not trace:
@@ -85,7 +86,7 @@ def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
     lines = [
         magnitude_words(cause).removesuffix(f" {beside}"),
         *([beside] if beside else []),
-        f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
+        f"{figures_text(cause.rms_arcsec, 2)} arcsec rms of the angle",
         f"{sure_words(cause)}:",
         odds_words(cause.evidence_nats),
     ]

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
-from flexspline.results.figures.words import angle_title, thin_labels, torque_title
+from flexspline.results.figures.words import angle_title, keep_inside, thin_labels, torque_title
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 YLABELS: Mapping[Effect, str] = {
     "angle": angle_title("added angle"),
     "gap": angle_title("added gap"),
-    "compliance": f"{angle_title('added compliance')} per N·m",
+    "compliance": f"{angle_title('added compliance')} per N·m".replace(" in ", "\nin "),
 }
 FAR_TORQUE_SHARE = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
@@ -101,7 +101,8 @@ def _panel(axes: Axes, shown: SweepPictureData, part: ContributionPanel) -> None
     room = 0.1 * max(high - low, 1e-9)
     axes.set_ylim(low - room, high + room)
     axes.set_xlabel(part.channel.label)
-    axes.set_ylabel(YLABELS[part.view])
+    axes.set_ylabel(YLABELS[part.view], fontsize=9.5, labelpad=2)
+    keep_inside(axes)
     axes.grid(True)
     if part.channel.levels:
         axes.set_xticks(range(len(part.channel.levels)), part.channel.levels)

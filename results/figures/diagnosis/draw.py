@@ -39,6 +39,7 @@ from flexspline.results.figures.diagnosis.specimens import (
     write_stiffness,
 )
 from flexspline.results.figures.diagnosis.units import shared_causes, write_units
+from flexspline.results.numbers import figures_text
 
 
 @dataclass(frozen=True)
@@ -118,9 +119,11 @@ def residual_words(
     results = {}
     for t in tests:
         if t.p_value < STRUCTURE_P_VALUE:
-            results[t.channel] = f"structure left, {t.rms_arcsec:.2g} arcsec"
+            results[t.channel] = f"structure left, {figures_text(t.rms_arcsec, 2)} arcsec"
         elif t.channel in nameless:
-            results[t.channel] = f"fitted, no cause known, {nameless[t.channel]:.2g} arcsec"
+            results[t.channel] = (
+                f"fitted, no cause known, {figures_text(nameless[t.channel], 2)} arcsec"
+            )
         else:
             results[t.channel] = nothing
     return results

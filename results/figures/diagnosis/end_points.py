@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.figures.words import angle_title, fit
+from flexspline.results.figures.words import angle_title, fit, keep_inside
 from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -24,6 +24,9 @@ MOST_UNITS = 30
 """Units drawn, a figure of 14 inches; of more, those furthest out."""
 ROW = 0.42
 """Inches of a row of bars."""
+TITLE = "Lost motion of each unit against the prediction"
+TITLE_OF_SEVERAL = "Lost motion of each unit at the torque of its largest deviation"
+"""Where units were measured at several torques: one torque of each unit is drawn."""
 
 
 def shown_units(analysis: EndPointAnalysis) -> list[UnitFinding]:
@@ -50,6 +53,7 @@ def _unit_rows(
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
         axes.set_xlabel(angle_title(x_title))
+        keep_inside(axes)
         titled(figure, 1 - 0.28 / height, title)
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
@@ -67,7 +71,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
         f"unit {n}" + (f", ± {u.torque_Nm:g} N·m" if torques else "")
         for n, u in zip(names, units, strict=True)
     ]
-    title = "Lost motion of each unit against the prediction"
+    title = TITLE_OF_SEVERAL if torques else TITLE
     with _unit_rows(path, labels, title, "angle between −T and +T", 0.8) as axes:
         ends, annotations = [], []
         for row, unit in enumerate(units):

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 from pathlib import Path
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.outcome import NamedCause, none_of
 from flexspline.pipeline.diagnosis.sweep.identification.unit_amplitudes import UnitAmplitudes
 from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.words import cause_title
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
-from flexspline.results.figures.words import thin_labels
+from flexspline.results.figures.words import GROUND, thin_labels
 from flexspline.results.sentences import capital
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -21,6 +22,9 @@ MOST_CAUSES = 4
 """Panels drawn, of the largest causes: together 8.2 inches high."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
 """Inches, as in `panels`."""
+
+UNDECIDED = "not decided"
+"""Of a cause that a unit has only as an alternative."""
 
 
 def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
@@ -36,14 +40,30 @@ def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
 
 
 def _sizes_apart(separate: UnitsApart, cause: NamedCause) -> UnitAmplitudes:
-    """Sizes in units that were diagnosed each by itself, over the largest."""
+    """Sizes in units that were diagnosed each by itself, over the largest; NaN where a unit has this cause
+    only as an alternative of another: 0 would say that it has none."""
     none = none_of(cause)
-    in_units = [{c.id: c for c in j.causes}.get(cause.id) for j in separate.decisions.values() if j]
-    pairs = [(none, 0.0) if c is None else (c.magnitude, c.magnitude_std) for c in in_units]
+    judged = [j for j in separate.decisions.values() if j]
+    in_units = [{c.id: c for c in j.causes}.get(cause.id) for j in judged]
+    pairs = [
+        (c.magnitude, c.magnitude_std) if c else (nan if _is_open(j, cause) else none, 0.0)
+        for j, c in zip(judged, in_units, strict=True)
+    ]
     size, std = np.array(pairs).T
-    whole = max(size - none, key=abs)
+    whole = max((size - none)[np.isfinite(size)], key=abs)
     split = sum(c.id == cause.id for c in separate.decision.causes) > 1 or None in in_units
     return UnitAmplitudes((size - none) / whole, std / abs(whole), inf if split else 0.0)
+
+
+def _is_open(decision: Decision, cause: NamedCause) -> bool:
+    """Whether a unit has the cause, or has it not, as far as its own rows tell."""
+    return any(cause.id in c.alternatives for c in decision.causes)
+
+
+def _verdict_words(share: UnitAmplitudes) -> str:
+    if np.isnan(share.share).any():
+        return UNDECIDED
+    return "the units differ" if share.differ else "the same in all units"
 
 
 def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
@@ -73,10 +93,19 @@ def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmpli
                 capsize=4,
                 lw=1.4,
             )
-            words = "the units differ" if share.differ else "the same in all units"
-            axes.set_title(f"{title}: {words}", fontsize=10.5, pad=6)
-            top = float((share.share + 2 * share.share_std).max())
-            bottom = float((share.share - 2 * share.share_std).min())
+            for place in np.flatnonzero(np.isnan(share.share)):
+                axes.annotate(
+                    UNDECIDED,
+                    (place, 0.5),
+                    ha="center",
+                    va="center",
+                    fontsize=9,
+                    color=MUTED,
+                    bbox=GROUND,
+                )
+            axes.set_title(f"{title}: {_verdict_words(share)}", fontsize=10.5, pad=6)
+            top = float(np.nanmax(share.share + 2 * share.share_std))
+            bottom = float(np.nanmin(share.share - 2 * share.share_std))
             axes.set_ylim(min(-0.15, bottom - 0.1), max(1.25, top + 0.1))
             axes.set_xlim(-0.5, len(names) - 0.5)
             axes.set_xticks(x, names if i == len(shares) - 1 else [""] * len(names))

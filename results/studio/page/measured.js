@@ -35,6 +35,7 @@ export class Measured {
       el("p", {}, this.name, " ", this.work.button, " ", this.work.line));
     this.fault = el("p", { class: "fault", role: "alert", hidden: true, id: "measured-fault" });
     this.findings = el("div", { id: "findings" }, guide());
+    this.told = false;
     root.append(zone, this.fault, this.findings);
     for (const name of ["dragover", "dragleave", "drop"]) {
       zone.addEventListener(name, (event) => {
@@ -53,6 +54,7 @@ export class Measured {
     } catch (error) {
       return this.refuse(`${file.name}: ${error.message}`);
     }
+    this.clear();
     this.file = file;
     this.name.textContent = file.name;
     this.work.button.hidden = false;
@@ -64,12 +66,20 @@ export class Measured {
     this.fault.hidden = !text;
   }
 
+  // Another file is diagnosed: nothing of the one before it stays below its name.
+  clear() {
+    this.told = false;
+    this.findings.classList.remove("stale");
+    this.findings.replaceChildren(guide());
+  }
+
   // The design has moved on since: what stands here is of an earlier one.
   old(is) {
-    this.findings.classList.toggle("stale", is);
+    this.findings.classList.toggle("stale", this.told && is);
   }
 
   show({ diagnosis: d, files }) {
+    this.told = true;
     this.findings.classList.remove("stale");
     const list = (title, entries) => (entries.length ? [el("h3", {}, title), el("ul", {}, ...entries.map((line) => el("li", {}, line)))] : []);
     const causes = d.causes.map((c) => el("tr", {}, el("td", {}, c.title), el("td", { class: "value" }, c.magnitude),

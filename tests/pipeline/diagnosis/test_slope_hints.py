@@ -96,7 +96,7 @@ def test_a_far_slope_that_no_cause_says_is_said(tmp_path: Path) -> None:
 
 def test_the_summary_says_them(tmp_path: Path) -> None:
     for factor, words in (
-        (0.1129848, "as with torque_Nm in in·lbf, not Nm"),
+        (0.1129848, "to within about 5 % as with torque_Nm in in·lbf, not Nm"),
         (2.0, "--against gear"),
     ):
         path = record(tmp_path, torque_in(factor))

@@ -143,6 +143,8 @@ def test_a_long_record_counts_the_rows_behind_its_means(tmp_path: Path) -> None:
     assert rows["means"] < rows["averaged"] <= rows["read"]
     assert rows["used"] + sum(rows["left_out"].values()) == rows["means"]
     assert "were read and averaged to" in said["notes"][0]
+    # those in the crossing are single rows
+    assert any("values with |T| <" in note for note in said["notes"])
 
 
 def test_end_points_give_the_gap_common_to_all_units(tmp_path: Path) -> None:

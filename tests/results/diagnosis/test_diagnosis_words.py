@@ -51,6 +51,31 @@ def named(cause: str, magnitude: float, unit: str = "%") -> NamedCause:
     return NamedCause(cause, 1.0, (), magnitude, 0.5, unit, 20.0, 3.0)
 
 
+def test_rivals_of_units_judged_apart_are_said_by_unit() -> None:
+    friction, rate = "friction_hysteresis", "rate_dependence"
+    causes = (
+        NamedCause(friction, 0.9, (rate,), 9.0, 0.1, "arcsec", 5.0, 4.0, own_units=("B",)),
+        NamedCause(friction, 0.8, (rate,), 3.0, 0.1, "arcsec", 1.0, 1.4, own_units=("C",)),
+        NamedCause(
+            rate, 0.5, (friction,), 3.6, 0.4, "arcsec per N·m/s", 0.4, 1.4, own_units=("A",)
+        ),
+    )
+    found = DiagnosisOutcome("ambiguous", causes)
+    diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(10.0, 0.2, 60.0, 5.0), found)
+    text = summary(diagnosis)
+    assert "which: unit B: friction hysteresis cannot be distinguished from rate dependence" in text
+    assert "; unit C: friction hysteresis cannot be" in text
+    assert (
+        "; unit A: rate dependence (twist that lags torque) cannot be distinguished from fric"
+        in text
+    )
+    lines = diagnosis_table(diagnosis, Path("out")).splitlines()
+    assert [x.split("   ")[0].strip() for x in lines if "not decided" in x] == [
+        "Friction hysteresis, unit B", "Friction hysteresis, unit C",
+        "Rate dependence (twist that lags torque), unit A",
+    ]  # fmt: skip
+
+
 def test_a_stiffer_gear_is_no_part_left_out() -> None:
     soft, stiff = named("series_compliance", 12.0), named("series_compliance", -36.8)
     friction = named("friction_hysteresis", 12.0, "arcsec")

@@ -49,6 +49,6 @@ def test_steady_wear_needs_no_such_word(tmp_path: Path) -> None:
 def test_creep_s_share_is_of_the_last_decade_of_a_hold() -> None:
     """As docs/contract.md says it."""
     assert (
-        "last decade of time adds in a hold of the record's median length"
+        "last decade of time adds in a hold of the record's median length, after a sudden load"
         in known_causes()["creep"].ratio
     )

@@ -58,7 +58,7 @@ def test_a_panel_says_what_the_model_holds_without_a_name() -> None:
     assert residual_words(tests, [wave]) == {
         "torque_Nm": "no further structure",
         "time_s": "fitted, no cause known, 1.3 arcsec",
-        "cycle": "structure left, 0.8 arcsec",
+        "cycle": "structure left, 0.80 arcsec",
     }
     assert residual_words(tests, [])["torque_Nm"] == "no structure left"
 

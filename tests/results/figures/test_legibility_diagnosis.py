@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.figures.diagnosis.captions import caption
+from flexspline.results.figures.diagnosis.contributions import write_contributions
 from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.panels import write_channels
@@ -57,12 +58,28 @@ def many(torque, row, unit):
     return -3 * branch(row) + drift + gap + 6 * sin(2 * pi * ((row // 60) * 30) / 360)
 
 
+def softer_places(torque, row, unit):
+    """Stiffness that differs by 10 % with the wave generator's position."""
+    return 0.1 * COMPLIANCE * torque * np.cos(2 * np.radians(30 * (row // 60)))
+
+
 def end_points(path, units):
     rng = np.random.default_rng(2)
     lines = ["unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec"]
     for i, name in enumerate(units):
         half = 41.7 + rng.normal(0, 4) + (4000 if i == 2 else 0)
         lines.append(f"{name},0.5,{half + 3:.2f},{-half + 3:.2f}")
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def end_points_at_torques(path):
+    """Six units with more gap and a common change of zero with the torque: pairs of causes are likely."""
+    lines = ["unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec"]
+    for i in range(6):
+        for torque in (2, 6, 12):
+            half, middle = GAP / 2 + 20 + COMPLIANCE * torque, 3 * torque + (7 * i) % 5
+            lines.append(f"{i + 1},{torque},{half + middle:.2f},{middle - half:.2f}")
     path.write_text("\n".join(lines) + "\n")
     return path
 
@@ -107,6 +124,7 @@ RECORDS = {
     "example end points": lambda f: MEASURED / "size-40-end-points.csv",
     "end points, one far out": lambda f: end_points(f, [*LONG, "b", "c", "d"]),
     "end points of many": lambda f: end_points(f, [f"{i}" for i in range(60)]),
+    "end points at several torques": end_points_at_torques,
     "example specimens": lambda f: MEASURED / "xb1-40-specimens.csv",
     "specimens": lambda f: specimens(f, [f"S{i}" for i in range(8)], {"flexspline.length_mm": (30.0,) * 4}),
     "specimens with long names": lambda f: specimens(
@@ -136,6 +154,20 @@ def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
     assert result.exit_code == 0, result.stderr
     assert len(found) >= 2
     assert [fault for figure in found for fault in faults(figure)] == []
+
+
+def test_the_title_of_an_axis_is_no_longer_than_the_axis(tmp_path: Path) -> None:
+    """Added compliance has the longest of a cause's panel."""
+    path = sweep(tmp_path / "m.csv", softer_places, cycles=12, columns=("input_angle_deg",))
+    shown = seen(diagnose_file(load_design(CUP), path, 31329, 43339))
+    assert shown is not None
+    with drawn_figures() as figures:
+        write_contributions(tmp_path / "c.png", shown)
+    assert_legible(figures)
+    titles = [axes.yaxis.label for axes in figures[0].axes]
+    assert any("added compliance" in title.get_text() for title in titles)
+    for axes in figures[0].axes:
+        assert axes.yaxis.label.get_window_extent().height <= axes.bbox.height
 
 
 def test_points_that_are_moved_are_said_to_be(tmp_path: Path) -> None:

@@ -108,6 +108,20 @@ def test_a_file_dropped_while_another_is_weighed_takes_its_place(tab: Page) -> N
     assert tab.at("#guide").is_visible()
 
 
+def test_a_refused_file_leaves_no_result_of_the_one_before(tab: Page, tmp_path: Path) -> None:
+    tab.quick()
+    tab.at("#tab-measured").click()
+    choose(tab, END_POINTS)
+    tab.at("#verdict").wait_for()
+    bad = tmp_path / "bad.csv"
+    bad.write_text("torque_Nm,angle_arcsec\n0.1,1\n0.2,two\n", encoding="utf-8")
+    choose(tab, bad)
+    tab.at("#progress-diagnose.fault:has-text('bad.csv:3')").wait_for()
+    assert tab.at("#verdict").count() == 0
+    assert tab.at("#findings a").count() == 0
+    assert tab.at("#guide").is_visible()
+
+
 def test_a_file_too_large_is_refused(tab: Page, tmp_path: Path) -> None:
     large = tmp_path / "large.csv"
     with large.open("wb") as out:

@@ -69,4 +69,4 @@ def test_end_points_without_names_are_told_what_is_missing_and_what_there_is(
         read_measurement(of(tmp_path, f"Wer;{ANGLES}\n{ENDS}"))
     said = str(refused.value)
     assert "column unit (name or number of the gear measured) is missing for end points" in said
-    assert 'the header in line 1 has: Drehmoment [Nm], Winkel + ["], Winkel - ["], Wer' in said
+    assert 'the header in line 1 has: Wer, Drehmoment [Nm], Winkel + ["], Winkel - ["]' in said

@@ -31,6 +31,8 @@ from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.diagnosis.summary import summary
+from flexspline.results.diagnosis.tolerance_words import modulus_alone, only_because
+from flexspline.results.diagnosis.words import free_words
 
 EXAMPLE = EXAMPLES / "xb1-40.toml"
 DESIGN = load_design(EXAMPLE)
@@ -224,11 +226,27 @@ def test_a_wall_within_its_tolerance_is_no_finding(bench, fe) -> None:
     assert outcome.verdict == "consistent"
     assert [t.sensitivity.key for t in analysis.chosen.terms] == [WALL]
     assert analysis.chosen.causes == ()
+    # such a wall changes K by 15 %, seven of the modulus' stated deviations
+    measurement = measured(K)
+    said = summary(
+        Diagnosis(
+            DESIGN, measurement, prediction_of(DESIGN, bench.K_b, bench.K_e), outcome,
+            specimens=analysis,
+        )
+    )  # fmt: skip
+    assert (
+        f"only because {WALL} may be off by ± 0.1 mm (general tolerance ISO 2768-m, assumed" in said
+    )
+    assert "with every dimension as drawn Young's modulus would have to differ by" in modulus_alone(
+        analysis
+    )
+    assert free_words(outcome) == "modulus and one dimension within its tolerance fitted"
 
 
 def test_a_modulus_within_its_uncertainty_is_no_finding(bench, fe) -> None:
-    outcome, _ = diagnosed(bench, noisy(fe.flexspline / 0.975, 5))
+    outcome, analysis = diagnosed(bench, noisy(fe.flexspline / 0.975, 5))
     assert outcome.verdict == "consistent"
+    assert only_because(analysis) == modulus_alone(analysis) == ""
     assert not outcome.causes
 
 
