@@ -27,5 +27,5 @@ def holds_as_one(
     for part in parts:
         given[part] = False
     held = [[values[part, 0].mean(), *np.median(values[part, 1:], axis=0)] for part in parts]
-    counts = [np.ones(given.sum()), *([float(len(part))] for part in parts)]
-    return np.vstack([values[given], *held]), np.concatenate(counts)
+    counts = np.r_[np.ones(given.sum()), [float(len(part)) for part in parts]]
+    return np.vstack([values[given], *held]), counts
