@@ -45,3 +45,29 @@ def test_rows_of_a_rest_are_one_row_of_the_crossing(
     assert found.id == "torque_offset"
     assert found.magnitude_std < 0.025  # between a rest and the next row lie 0.08 N·m, 0.023 rms
     assert found.magnitude == pytest.approx(offset_Nm, abs=2 * found.magnitude_std)
+
+
+def rows_at_zero(offset_Nm: float, seed: int) -> str:
+    """Eighteen sines of 50 rows, every 25th without torque: there the output stays where it was."""
+    rng = np.random.default_rng(seed)
+    k = np.arange(1, 901)
+    torque = 12.0 * np.sin(2 * np.pi * k / 50)
+    sides = np.sign(np.round(torque, 9))
+    sides[sides == 0] = sides[np.flatnonzero(sides == 0) - 1]
+    angle = COMPLIANCE * torque + sides * GAP_ARCSEC / 2 + rng.normal(0, 0.41, len(k))
+    read = torque + offset_Nm + rng.normal(0, 0.024, len(k))
+    rows = zip((k - 1) // 50, 3.6 * k, read, angle, strict=True)
+    body = "".join(f"{c},{t:.1f},{m:.5f},{a:.2f}\n" for c, t, m, a in rows)
+    return "cycle,time_s,torque_Nm,angle_arcsec\n" + body
+
+
+@pytest.mark.usefixtures("causes_only")
+@pytest.mark.parametrize("seed", [1, 3])
+def test_rows_at_zero_torque_are_no_friction_ahead_of_the_gap(tmp_path: Path, seed: int) -> None:
+    """They lie late both ways: friction of 0.17 ± 0.30 and 0.41 ± 0.52 N·m was named with certainty."""
+    path = tmp_path / "rig.csv"
+    path.write_text(rows_at_zero(-0.165, seed))
+    told = diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), path, 31313.5, 43275.0)
+    (found,) = told.outcome.causes
+    assert found.id == "torque_offset"
+    assert found.magnitude == pytest.approx(-0.165, abs=2 * found.magnitude_std)
