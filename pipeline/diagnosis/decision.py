@@ -6,7 +6,7 @@ What follows from evidence is decided here. All log quantities are in nats. Whic
 explains its curve is decided in `whole_gear/identification.py`, by chi squares of inputs that have no prior;
 its two limits are here.
 
-Of a sweep `sweep/diagnose.py` may overrule it in five places, in this order; all but the first say `unknown`,
+Of a sweep `sweep/diagnose.py` may overrule it in six places, in this order; all but the first say `unknown`,
 by `overruled`:
 
 | where | what it sees |
@@ -16,6 +16,7 @@ by `overruled`:
 | `sweep/physical_limits.py`, `slow_noise` | a `consistent` record whose slow noise hides an effect |
 | `sweep/rig_faults/`: `backward_loops.py`, `late_angle.py` | a torque or an angle that is read late |
 | `sweep/held_out.py`, `refuted` | causes that make most levels of a channel, held out as wholes, worse |
+| `sweep/held_out.py`, `unpredicted` | causes that predict nothing of cycles between others |
 """
 
 from __future__ import annotations

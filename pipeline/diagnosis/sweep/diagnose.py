@@ -23,7 +23,7 @@ from flexspline.pipeline.diagnosis.outcome import (
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import Shortage
-from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
+from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted, unpredicted
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest
@@ -61,6 +61,8 @@ def diagnose_sweep(
     ids = [c.id for c in own.causes]
     gain, levels = gains_of(explained, ids)  # held_out.py
     fails = refuted(levels)  # held_out.py
+    if fails is None and own.verdict in ("named", "ambiguous"):
+        fails = unpredicted(gain)  # held_out.py
     decision = _tested(apart.decision if apart else own, fails)
     then: NextMeasurement | None
     if shown.misread:

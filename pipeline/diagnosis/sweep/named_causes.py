@@ -135,6 +135,9 @@ def _stands_for_springs(identified: Identification) -> bool:
     friction; nor is what carries torque ahead of the teeth, which takes up no twist.
     """
     evidence, fit = identified.search.evidence, identified.fit
+    ahead = evidence.columns.ahead is not None
+    if not ahead and identified.rms[FRICTION] > fit.widest_loop_arcsec():
+        return True  # no loop is so: what never slides is a spring
     stated = float(evidence.columns.base_prior[fit.units])
     others = [i for i in identified.best.terms if evidence.terms[i].owner != FRICTION]
     alone = fit_regressors(evidence, others).calibration.compliance

@@ -58,6 +58,7 @@ def crossing(
     gap_arcsec: np.ndarray | float,
     noise_arcsec: float,
     torque_noise_Nm: float,
+    readings: np.ndarray | float = 1.0,
 ) -> Crossing | None:
     """Find the offset from rows near zero torque.
 
@@ -65,7 +66,7 @@ def crossing(
     ----------
     torque_Nm : (n,) readings. left_arcsec : (n,) measured angle less everything but the gap; what an
         offset does to the twist itself is in the zero, which is free. gap_arcsec : of all rows, or (n,) each
-        row's own.
+        row's own. readings : rows of the record of which each is the mean.
 
     Returns None where the gap is too small to see, or no rows lie near zero.
     """
@@ -80,7 +81,8 @@ def crossing(
         return None
     width = max(torque_noise_Nm, LEAST_WIDTH * largest)
     blurs = blurs_of(width / largest)
-    rows = CrossingRows.of(torque_Nm[near], left_arcsec[near], gap[near], noise_arcsec, width)
+    many = np.broadcast_to(readings, torque_Nm.shape)[near]
+    rows = CrossingRows.of(torque_Nm[near], left_arcsec[near], gap[near], noise_arcsec, width, many)
     even = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSET_STEPS) * largest * INSIDE_SHARE
     inside = rows.torque_Nm[np.abs(rows.left_arcsec) < WITHIN_GAP * rows.gap_arcsec]
     places = np.union1d(even, np.round(inside / width) * width)

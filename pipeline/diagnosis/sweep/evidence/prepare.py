@@ -9,10 +9,12 @@ import numpy as np
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -120,7 +122,7 @@ def prepare(
         rig,
         design_matrix(
             rig,
-            _knowable(sweep),
+            _knowable(sweep, true),
             carried,
             sudden_step(history, target, kept),
             (*local_bumps(history, target, kept), *curve_steps(history, target, kept)),
@@ -136,7 +138,14 @@ def prepare(
     )
 
 
-def _knowable(sweep: Sweep) -> dict[str, Cause]:
-    """Causes that the record's channels let one speak of."""
-    timed = sweep.history.time_s is not None
-    return {name: c for name, c in known_causes().items() if timed or not c.needs_time}
+def _knowable(sweep: Sweep, true: History) -> dict[str, Cause]:
+    """Causes that the record's channels let one speak of.
+
+    Behind friction torque rests a while after each turn: creep shows only where the rig holds it.
+    """
+    timed, held = sweep.history.time_s is not None, bool(holds(true))
+    return {
+        name: c
+        for name, c in known_causes().items()
+        if (timed or not c.needs_time) and (held or name != CREEP)
+    }

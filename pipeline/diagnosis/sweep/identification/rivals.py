@@ -47,6 +47,8 @@ def rivals_of(
         allowed = {other, *more, *(p for p in present - {cause} if not p.startswith("?"))}
         if (cause, other) == (FRICTION, RATE):
             allowed.add(SERIES)  # a lag beside a spring is one Kelvin element
+        if other in known_causes()[cause].made_of:
+            allowed |= known_causes()[cause].made_of  # together they imitate it, one alone may not
         parts = known_causes()[other].made_of
         starts = [without({cause})]
         if cause in parts <= present:

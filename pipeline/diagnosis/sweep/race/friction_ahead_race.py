@@ -84,7 +84,10 @@ as well there: between rows far apart it has no place of its own."""
 BEYOND_BOTH = 1.2
 """Times the larger of the guess and what the loop's shape says: so far such places are looked for."""
 
-
+UNMEASURED_SHARE = 0.2
+"""Of the friction's torque, from which its deviation says that it is not measured: beside a shifted reading
+whose rows at zero torque lie in the gap it was 0.26 and 1.05, of true friction 0.05 at most. Friction is then
+held against a race without it, as is a loop of less rms than the noise."""
 OTHER_FRICTION_LOG = 0.7
 """Of a guess over what the race makes of it: where drag spreads the gap's crossing it was 1.65 times too
 large; a gap that swung with the temperature made one 2.7 times that of the race."""
@@ -105,7 +108,8 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
         return None
     if not _seen(raced):
         return None
-    nats = guess.nats if _is_guessed(raced, guess.friction_Nm) else 0.0
+    is_sure = _is_guessed(raced, guess.friction_Nm) and _is_measured(raced, std)
+    nats = guess.nats if is_sure else 0.0
     if nats < SURE_NATS + _unnamed_nats(raced):
         plain = run_race(prepared)
         gain = gained(raced, plain)
@@ -133,6 +137,15 @@ def _is_guessed(raced: ExplainedSweep, friction_Nm: float) -> bool:
     ahead = raced.prepared.ahead
     assert ahead is not None
     return abs(float(np.log(ahead.amplitudes[0] / friction_Nm))) < OTHER_FRICTION_LOG
+
+
+def _is_measured(raced: ExplainedSweep, std_Nm: float) -> bool:
+    """Whether the race knows the friction's torque, and sees its loop: what it has bent to something else, it
+    does not."""
+    ahead, identified = raced.prepared.ahead, raced.identified
+    assert ahead is not None
+    known = std_Nm < UNMEASURED_SHARE * ahead.amplitudes[0]
+    return known and identified.rms[FRICTION] > raced.prepared.noise.std_arcsec
 
 
 def _unnamed_nats(raced: ExplainedSweep) -> float:

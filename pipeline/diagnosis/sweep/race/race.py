@@ -25,6 +25,7 @@ from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import robust_std
 from flexspline.pipeline.diagnosis.sweep.crossing.gap_crossing import Crossing, crossing
+from flexspline.pipeline.diagnosis.sweep.crossing.rest_rows import holds_as_one
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
@@ -267,8 +268,8 @@ def _changes(noise: Noise, again: Noise) -> tuple[float, float]:
 def crossing_of(prepared: PreparedSweep, fit: SweepFit, rows: np.ndarray) -> Crossing | None:
     """The crossing as read in some rows (k,), with everything but the gap taken off the measured angle."""
     history = prepared.rig.history
-    return crossing(
-        history.torque_Nm[rows] + prepared.offset_Nm, fit.left_but_for_gap()[rows],
-        fit.gap_arcsec()[rows],
-        prepared.noise.std_arcsec, torque_noise_Nm(history),
-    )  # fmt: skip
+    read = np.column_stack([history.torque_Nm, fit.left_but_for_gap(), fit.gap_arcsec()])
+    at_once, readings = holds_as_one(history, read, rows)
+    torque, left, gap = at_once.T
+    noise, torque_noise = prepared.noise.std_arcsec, torque_noise_Nm(history)
+    return crossing(torque + prepared.offset_Nm, left, gap, noise, torque_noise, readings)

@@ -55,7 +55,7 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
         if any(gained(shifted, plain) > NAMED_COST for shifted in raced):
             first, last = raced[0], raced[-1]
             # not by the angles' misfit: lags of temperature, tuned in each race, move that by tens of nats
-            return first if wrong_side_rows(first) < wrong_side_rows(last) else last
+            return _doubted(first if wrong_side_rows(first) < wrong_side_rows(last) else last)
     if seen is not None and is_shifted(seen, prepared):
         return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
     if seen is not None and plain.identified.unnamed(()) and _may_be_shifted(seen, prepared):
@@ -64,6 +64,14 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
         if shifted.offset_nats > OFFSET_SURE and not shifted.identified.unnamed(()):
             return shifted
     return plain
+
+
+def _doubted(shifted: ExplainedSweep) -> ExplainedSweep:
+    """An offset that the crossing's likelihood does not say is as doubtful as the two are apart."""
+    seen = shifted.crossing
+    assert seen is not None
+    std = float(np.hypot(seen.std_Nm, seen.offset_Nm - shifted.offset_Nm))
+    return replace(shifted, crossing=replace(seen, std_Nm=std))
 
 
 def _may_be_shifted(seen: Crossing, prepared: PreparedSweep) -> bool:
