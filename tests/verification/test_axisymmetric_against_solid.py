@@ -49,8 +49,8 @@ def design() -> Design:
 
 
 OF_A_MESH = 0.06
-"""Of a stress averaged at nodes of 0.3 to 1.2 mm elements. fTetWild makes another mesh each time: of 11 meshes
-nine had a peak 1.4 % below to 2.6 % above the meridian's, two one 4.8 % above."""
+"""Of a stress averaged at nodes of 0.3 to 1.2 mm elements. fTetWild makes another mesh each time: of 11
+meshes nine had a peak 1.4 % below to 2.6 % above the meridian's, two one 4.8 % above."""
 
 
 @cache
