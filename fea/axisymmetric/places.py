@@ -16,6 +16,8 @@ from flexspline.fea.own_assembly import triangles_of
 OUTSIDE = 0.01
 """Share of the mesh's size that a point may lie outside. A mesher's walls may begin 1e-6 mm outside, points
 of a parabola 1e-4 of its radius."""
+REFERENCE = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 0.5]])
+"""Coordinates of a triangle's six numbers: corners, middles of 01, 12, 02."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class Places:
         """
         mesh, element = space.basis.mesh, space.basis.elem
         straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
-        triangle, local = located(straight, space.places, r, z)
+        triangle, local = located(straight, space.places, space.basis.element_dofs, r, z)
         mapping, at = MappingAffine(straight), local[:, :, None]
         shapes = [element.gbasis(mapping, at, i, tind=triangle)[0] for i in range(6)]
         return cls(space.basis.element_dofs[:, triangle], tuple(shapes))
@@ -55,11 +57,12 @@ class Places:
 
 
 def located(
-    straight: MeshTri, numbers: np.ndarray, r: np.ndarray, z: np.ndarray
+    straight: MeshTri, numbers: np.ndarray, cells: np.ndarray, r: np.ndarray, z: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the triangle (k,) of each point r, z (k,) [mm], and its reference coordinates (2, k) there.
 
-    A point just outside is moved to the nearest of the places (count, 2) of the mesh's numbers.
+    `numbers` (count, 2) are the places of the P2 numbers, `cells` (6, m) each triangle's numbers. A point
+    just outside is moved to the nearest number, which may lie outside of straight edges itself: on an arc.
 
     Raises
     ------
@@ -69,10 +72,15 @@ def located(
 
     points = np.stack([r, z])
     triangle = triangles_of(straight, points)
-    if (outside := triangle < 0).any():
+    outside = triangle < 0
+    triangle[outside] = 0
+    local = MappingAffine(straight).invF(points[:, :, None], tind=triangle)[:, :, 0]
+    if outside.any():
         away, nearest = cKDTree(numbers).query(points[:, outside].T)
         if away.max() > OUTSIDE * np.ptp(straight.p, axis=1).max():
             raise MeshingError(f"{outside.sum()} of {len(r)} places are not on the meridian")
-        points[:, outside] = numbers[nearest].T
-        triangle[outside] = triangles_of(straight, points[:, outside])
-    return triangle, MappingAffine(straight).invF(points[:, :, None], tind=triangle)[:, :, 0]
+        owner = np.zeros(len(numbers), int)
+        owner[cells.ravel()] = np.arange(cells.size)
+        of_cell, triangle[outside] = np.divmod(owner[nearest], cells.shape[1])
+        local[:, outside] = REFERENCE[:, of_cell]
+    return triangle, local

@@ -56,7 +56,9 @@ class TorsionAtPoints:
         places, of = np.unique(
             np.stack([np.hypot(x, y), z], axis=1).round(DIGITS), axis=0, return_inverse=True
         )
-        triangle, local = located(self._straight, self.field.places, *places.T)
+        triangle, local = located(
+            self._straight, self.field.places, self.field.triangles.T, *places.T
+        )
         shapes = shape_functions(local)
         nodes = self.field.triangles[triangle].T
         values = sum(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from example_files import EXAMPLES
 
@@ -13,6 +14,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import torque_stress
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 
@@ -61,3 +63,18 @@ def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
     assert whole.displacement == pytest.approx(
         superposed.displacement, abs=0.01 * abs(superposed.displacement).max()
     )
+
+
+def test_beside_an_outer_fillet_nothing_is_extrapolated(tmp_path: Path) -> None:
+    """Its convex arc lies outside of the meridian's straight edges."""
+    wide = with_values(
+        load_design(EXAMPLES / "xb1-40.toml"), {"flexspline.bolt_hole_diameter_mm": 4.2}
+    )
+    cup = AnalysisContext(wide, Cache(tmp_path), Progress()).part("flexspline")
+    field = torque_stress.torque_field(cup)
+    without = torque_stress.torque_field(replace(cup, part=cup.part.without_holes()))
+    # nothing moves farther than the ring's outside, which the torque turns as a rigid body
+    K = twisted_part(cup).stiffness.levels[-1].K_Nm_per_rad
+    ring = wide.flexspline.ring_radius * wide.load.torque_Nm / K
+    assert np.linalg.norm(field.displacement, axis=1).max() == pytest.approx(ring, rel=1e-3)
+    assert field.peak.mises_MPa == pytest.approx(without.peak.mises_MPa, rel=0.1)
