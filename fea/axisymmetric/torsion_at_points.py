@@ -53,9 +53,12 @@ class TorsionAtPoints:
     def _seen(self, nodal: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return values at the P2 nodes (count, ...) at points, for a turn of 1 rad."""
         x, y, z = points.T
-        places, of = np.unique(
-            np.stack([np.hypot(x, y), z], axis=1).round(DIGITS), axis=0, return_inverse=True
+        every = np.stack([np.hypot(x, y), z], axis=1)
+        # not the rounded places: these may lie just outside
+        _, first, of = np.unique(
+            every.round(DIGITS), axis=0, return_index=True, return_inverse=True
         )
+        places = every[first]
         triangle, local = located(
             self._straight, self.field.places, self.field.triangles.T, *places.T
         )
