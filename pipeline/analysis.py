@@ -12,7 +12,7 @@ from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.ellipse_peak import ellipse_field
+from flexspline.pipeline.ellipse_peak import ellipse_field, full_seat_peak
 from flexspline.pipeline.figure_tasks import FigureTasks
 from flexspline.pipeline.gear.gear_curve import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
@@ -89,15 +89,16 @@ def stiffnesses(
     if flexspline and rim:
         tasks.add_rim(rim_part)
     figures = tasks.figures(begun)
-    wave_peak = figures.peaks.get("wave_generator_peak")
-    with_holes = wave_peak is not None and not wave_peak.stands_for
+    wave_peak, tried, full_seat = figures.peaks.get("wave_generator_peak"), Attempts(), None
+    if wave_peak is not None and not rim_part.axisymmetric and not wave_peak.stands_for:
+        full_seat = tried.get("full_seat_peak", lambda: full_seat_peak(rim_part))
     return Stiffnesses(
         in_order(figures.K),
         wave_peak,
         figures.peaks.get("half_seat_peak"),
         context.ring if flexspline else None,
-        figures.missing,
-        figures.peaks.get("full_seat_peak") if with_holes else None,
+        {**figures.missing, **tried.missing},
+        full_seat,
     )
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from flexspline.fea.types import Shortfall, Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.attempts import Attempts
-from flexspline.pipeline.ellipse_peak import ellipse_peak, full_seat_peak, half_seat_peak
+from flexspline.pipeline.ellipse_peak import ellipse_peak, half_seat_peak
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -73,8 +73,6 @@ class FigureTasks:
             self._add(figure_of(case), partial(rim_stiffness, rim, case))
         self._add("wave_generator_peak", partial(ellipse_peak, rim))
         self._add("half_seat_peak", partial(half_seat_peak, rim))
-        if not rim.axisymmetric:
-            self._add("full_seat_peak", partial(full_seat_peak, rim))
 
     def _add(self, name: str, solve: Callable[[], Stiffness | StressPeak]) -> None:
         self._tasks.append(partial(self._result, partial(_attempt, name, solve)))

@@ -5,11 +5,13 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
+import numpy as np
+
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.axisymmetric.torsion_at_points import TorsionAtPoints
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.peak import StressWithoutCuts, stress_field, superposed_field
+from flexspline.fea.solid.peak import FieldWithoutCuts, stress_field, superposed_field
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
@@ -80,14 +82,15 @@ def _superposed(model: PartModel, twisted: TwistedPart) -> SolidField | None:
             without = TorsionAtPoints(
                 _load(whole).solve(whole.part.meridian, Deadline(STAGE_SECONDS))
             )
-            displacement = twisted.change + without.displacement(twisted.meshed.mesh.nodes)
+
+            def at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+                displacement, stress = without.at(points)
+                return displacement * angle, stress * angle
+
             return superposed_field(
                 twisted.meshed.mesh,
-                displacement * angle,
                 twisted.change * angle,
-                StressWithoutCuts(
-                    lambda points: without.stress(points) * angle, without.field.places
-                ),
+                FieldWithoutCuts(at, without.field.places),
                 model.material,
                 _title(model),
                 sharp_edges(model, twisted.meshed),

@@ -24,18 +24,21 @@ class TorsionAtPoints:
 
     field: RevolvedField
 
-    def displacement(self, points: np.ndarray) -> np.ndarray:
-        """Return it (k, 3) [mm] at points (k, 3) [mm]; raises MeshingError as `located`."""
-        around = _directions(points)[1]
-        return self._seen(self.field.displacement[:, TANGENTIAL], points)[:, None] * around
+    def at(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacement (k, 3) [mm] and stress (k, 3, 3) [MPa] at points (k, 3) [mm], all Cartesian.
 
-    def stress(self, points: np.ndarray) -> np.ndarray:
-        """Return it (k, 3, 3) [MPa] at points (k, 3) [mm]; raises MeshingError as `located`."""
+        Raises
+        ------
+        MeshingError : as `located`.
+        """
         outward, around, along = _directions(points)
-        shear = self._seen(self.field.stress[:, [R_THETA, THETA_Z]], points)
-        in_plane = shear[:, :1] * outward + shear[:, 1:] * along
+        shear = self.field.stress[:, [R_THETA, THETA_Z]]
+        moved, *shears = self._seen(
+            np.column_stack([self.field.displacement[:, TANGENTIAL], shear]), points
+        ).T
+        in_plane = shears[0][:, None] * outward + shears[1][:, None] * along
         half = np.einsum("ka,kb->kab", in_plane, around)
-        return half + half.swapaxes(1, 2)
+        return moved[:, None] * around, half + half.swapaxes(1, 2)
 
     @cached_property
     def _straight(self) -> MeshTri:
@@ -51,7 +54,7 @@ class TorsionAtPoints:
         return float((self.field.displacement[r > 0, TANGENTIAL] / r[r > 0]).max())
 
     def _seen(self, nodal: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Return values at the P2 nodes (count, ...) at points, for a turn of 1 rad."""
+        """Return values at the P2 nodes (count, c) at points, (k, c), for a turn of 1 rad."""
         x, y, z = points.T
         every = np.stack([np.hypot(x, y), z], axis=1)
         # not the rounded places: these may lie just outside
@@ -65,8 +68,7 @@ class TorsionAtPoints:
         shapes = shape_functions(local)
         nodes = self.field.triangles[triangle].T
         values = sum(
-            shape.reshape(-1, *[1] * (nodal.ndim - 1)) * nodal[node]
-            for shape, node in zip(shapes, nodes, strict=True)
+            shape[:, None] * nodal[node] for shape, node in zip(shapes, nodes, strict=True)
         )
         return np.asarray(values)[of.ravel()] / self._angle
 

@@ -29,15 +29,14 @@ def test_displacement_and_stress_of_a_tube(turned: TorsionAtPoints) -> None:
     points = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1)
     around = np.stack([-np.sin(phi), np.cos(phi), 0 * phi], axis=1)
     # a turn of 1 rad of the far end: u = r z/L along φ, τ_φz = μ r/L, exactly (Saint-Venant)
-    assert turned.displacement(points) == pytest.approx(
-        (r * z / LENGTH_mm)[:, None] * around, abs=1e-9
-    )
+    displacement, stress = turned.at(points)
+    assert displacement == pytest.approx((r * z / LENGTH_mm)[:, None] * around, abs=1e-9)
     shear = STEEL.mu * r / LENGTH_mm
     expected = np.zeros((len(r), 3, 3))
     expected[:, :, 2] = expected[:, 2, :] = shear[:, None] * around
-    assert turned.stress(points) == pytest.approx(expected, abs=1e-6 * STEEL.mu)
+    assert stress == pytest.approx(expected, abs=1e-6 * STEEL.mu)
 
 
 def test_a_point_off_the_body_is_refused(turned: TorsionAtPoints) -> None:
     with pytest.raises(MeshingError, match="not on the meridian"):
-        turned.stress(np.array([[OUTER_mm + 1.0, 0.0, 5.0]]))
+        turned.at(np.array([[OUTER_mm + 1.0, 0.0, 5.0]]))
