@@ -87,7 +87,7 @@ class Diagnosis:
     def calibration(self) -> Calibration | None:
         """Gap and compliance as the record has them; None of specimens, and of too few data."""
         if self.sweep is not None:
-            return calibration_of(self.sweep.explained)
+            return self.sweep.calibration
         return self.end_points.calibration if self.end_points is not None else None
 
     @cached_property
@@ -143,8 +143,7 @@ def diagnose_measurement(
         if measurement.history.time_s is None:
             outcome = in_rows(outcome)
         if behind:
-            calibration = calibration_of(behind.explained)
-            outcome = with_scale_error(outcome, measurement, prediction, calibration)
+            outcome = with_scale_error(outcome, measurement, prediction, behind.calibration)
         model = behind.model if behind else None
         inputs = None
         if chain and behind:

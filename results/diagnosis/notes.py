@@ -17,8 +17,6 @@ from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
-from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
@@ -30,15 +28,13 @@ from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.position_notes import position_notes
 from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
+from flexspline.results.diagnosis.specimen_notes import specimen_notes
 from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes, zero_notes
-from flexspline.results.diagnosis.tolerance_words import modulus_alone, within_tolerance
 from flexspline.results.diagnosis.unit_notes import unit_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
-from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
+from flexspline.results.diagnosis.words import ratio_words, title_of
 from flexspline.results.numbers import figures_text, grouped
 
-GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
-"""What says which part a specimen is."""
 LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 """Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
 NOTHING_SHARE = 0.01
@@ -154,7 +150,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
         return (*end_point_notes(diagnosis.end_points), *of_race)
     if diagnosis.specimens is not None:
-        return (*_specimen_notes(diagnosis.specimens),)
+        return (*specimen_notes(diagnosis.specimens),)
     return ()
 
 
@@ -266,41 +262,3 @@ def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
     return [
         f"{some} of {every} rows were used to compare causes; every unit was compared with the envelope"
     ]
-
-
-def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
-    chosen = analysis.chosen
-    noise = f"the noise of one stiffness is taken as {100 * float(chosen.noise.mean()):.2g} %"
-    if analysis.race.data.std is None:
-        noise += ", estimated from the scatter, because the file states none"
-    lines = [noise]
-    if analysis.part_guessed_by is not None:
-        part = analysis.part[0]
-        lines.insert(
-            0,
-            f"the file has no column part: the part is taken as {part} because of "
-            f"{GUESSED_BY[analysis.part_guessed_by]}",
-        )
-    if YOUNGS_MODULUS not in chosen.causes:
-        change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
-        dimensions = within_tolerance(analysis)
-        beside = f", beside {dimensions[0][0].key}" if dimensions else ""
-        lines.append(f"Young's modulus calibrated by {change} % within its uncertainty{beside}")
-    for s, value in within_tolerance(analysis):
-        change = f"{value:+.2g}".replace("-", "−")
-        lines.append(
-            f"{s.key} {change} mm would fit the data; this is within ± {s.tolerance_mm:g} mm (ISO "
-            "2768-m) and therefore not a finding"
-        )
-    if alone := modulus_alone(analysis):
-        lines.append(alone)
-    how = (
-        "solved with its holes"
-        if analysis.with_holes
-        else "the given stiffness times a ratio of the model without holes"
-    )
-    lines.append(
-        f"the simulated stiffness of each specimen is {how}; sensitivities to dimensions come from the model "
-        "without holes"
-    )
-    return lines

@@ -9,7 +9,9 @@ steps: docs/diagnosis.md.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
+from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.decision import Decision, overruled
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
@@ -24,6 +26,7 @@ from flexspline.pipeline.diagnosis.outcome import (
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted, unpredicted
+from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest
@@ -46,6 +49,11 @@ class SweepAnalysis:
     tests: tuple[ChannelTest, ...]
     causes: tuple[NamedCause, ...]
     apart: UnitsApart | None = None
+
+    @cached_property
+    def calibration(self) -> Calibration:
+        """Gap and compliance as the record has them, of what its units have in common."""
+        return calibration_of(self.explained)  # magnitudes/calibration_std.py
 
 
 def diagnose_sweep(

@@ -73,6 +73,11 @@ class PreparedSweep:
         """Friction ahead of the teeth, taken off the torque."""
         return self.columns.ahead.element if self.columns.ahead else None
 
+    def variance_of_readings(self, compliance: float) -> float:
+        """[arcsec²] of the angles that an encoder rounded, about the mean of a row; arcsec per N·m."""
+        averaging = self.sweep.averaging
+        return self.noise.white if averaging is None else averaging.variance_within(compliance)
+
     @property
     def row_counts(self) -> RowCounts:
         """How many rows identify causes, and why the others do not."""

@@ -48,13 +48,10 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     calibration = _of_best_set(explained, unit)
     if terms_cancel(explained.identified):
         calibration = _both(_calibrated(without_unnamed(explained.identified), unit), calibration)
-    lags = long_lags(explained.identified.fit)
-    for other, share in zip(lags.fits, lags.shares, strict=True):
-        calibration = _both(calibration, _calibrated(other, unit), share)
-    ends = soft_ends(explained.identified.fit)
-    return (
-        calibration if ends is None else _both(calibration, _calibrated(ends.fit, unit), ends.share)
-    )
+    for others in (long_lags(explained.identified.fit), soft_ends(explained.identified.fit)):
+        for other, share in zip(others.fits, others.shares, strict=True):
+            calibration = _both(calibration, _calibrated(other, unit), share)
+    return calibration
 
 
 def _both(calibration: Calibration, other: Calibration, share: float = 1.0) -> Calibration:

@@ -6,49 +6,28 @@ the record begins, and by what the design states of the compliance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import exp, log, sqrt
-
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Search
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import with_shapes
+from flexspline.pipeline.diagnosis.sweep.magnitudes.other_fits import OtherFits, odds
 
 SHORTEST, LONGEST, TIMES = 0.5, 16.0, 16
 """Over the longest lag found, and over the longest of the race, in even steps of their logs. Of
 lags of four times the race's longest and more, only a parabola is left within a cycle. Judgement."""
-LAG_NATS = 3.0
-"""As of other shapes (`SHAPE_NATS` of `magnitudes.py`)."""
-MOST_GAIN = log(50.0)
-"""Most by which another lag counts: its share is then 0.98. Judgement."""
 
 
-@dataclass(frozen=True)
-class LongLags:
-    """Fits with other lags, and the share of each beside the best set's, which together are below 1."""
-
-    fits: tuple[SweepFit, ...]
-    shares: tuple[float, ...]
-
-    def deviation(self, size: float, cause: str) -> float:
-        """Of a cause's size by the other lags, beside which it may be missing."""
-        none = known_causes()[cause].none
-        sizes = [fit.magnitudes().get(cause, none) for fit in self.fits]
-        return sqrt(sum(w * (x - size) ** 2 for w, x in zip(self.shares, sizes, strict=True)))
-
-
-def long_lags(fit: SweepFit) -> LongLags:
+def long_lags(fit: SweepFit) -> OtherFits:
     """The same record with one lag of another time in the place of those found, and of a drift beside them.
 
     No fits where no lag was found, or where torque is held.
     """
     lags = [t for t in fit.regressors if t.owner == RATE and "longest_s" in t.shape]
     if not lags:
-        return LongLags((), ())
+        return OtherFits()
     longest = max(lags, key=lambda t: t.shape["lag_s"])
     ends = SHORTEST * longest.shape["lag_s"], LONGEST / 4 * longest.shape["longest_s"]
     shapes = [
@@ -61,11 +40,10 @@ def long_lags(fit: SweepFit) -> LongLags:
     for less in ({RATE}, {RATE, DRIFT}):
         rest = [i for i in fit.posterior.terms if evidence.terms[i].owner not in less]
         for i in range(len(fit.evidence.terms), len(evidence.terms)):
-            gain = (search.candidate((*rest, i)).log_evidence - now) / LAG_NATS
-            likely[(*rest, i)] = exp(min(gain, MOST_GAIN))
+            likely[(*rest, i)] = odds(search.candidate((*rest, i)).log_evidence - now)
     fits = [fit_regressors(evidence, terms) for terms in likely]
     # amplitudes that would release energy are none
     good = [k for k, other in enumerate(fits) if other.posterior.mean[-1] > 0]
     values = list(likely.values())
     total = 1.0 + sum(values[k] for k in good)
-    return LongLags(tuple(fits[k] for k in good), tuple(values[k] / total for k in good))
+    return OtherFits(tuple(fits[k] for k in good), tuple(values[k] / total for k in good))

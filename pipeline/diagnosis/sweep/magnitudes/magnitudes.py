@@ -23,13 +23,11 @@ from flexspline.pipeline.diagnosis.sweep.magnitudes.friction_place import (
     width_share_std,
 )
 from flexspline.pipeline.diagnosis.sweep.magnitudes.long_lags import long_lags
+from flexspline.pipeline.diagnosis.sweep.magnitudes.other_fits import SHAPE_NATS
 from flexspline.pipeline.diagnosis.sweep.magnitudes.soft_ends import soft_ends
 from flexspline.pipeline.diagnosis.sweep.magnitudes.spring_changes import spring_std
 from flexspline.pipeline.diagnosis.sweep.magnitudes.thermal_lag import lag_std
 
-SHAPE_NATS = 3.0
-"""Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
-the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
 """Sets with a weight below e^−6 = 0.25 % are left out."""
 NEAR_ZERO = 0.15
@@ -61,11 +59,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if SERIES in std:
         of_laws = 100 * spring_std(identified.fit) / identified.fit.rig.prediction.compliance
         std[SERIES] = hypot(std[SERIES], of_laws)
-    ends = soft_ends(identified.fit)
-    if ends is not None:
-        std = {c: hypot(own, ends.deviation(best[c], c)) for c, own in std.items()}
-    lags = long_lags(identified.fit)
-    std = {c: hypot(own, lags.deviation(best[c], c)) for c, own in std.items()}
+    for others in (soft_ends(identified.fit), long_lags(identified.fit)):
+        std = {c: hypot(own, others.deviation(best[c], c)) for c, own in std.items()}
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))

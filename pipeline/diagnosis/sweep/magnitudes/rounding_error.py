@@ -66,11 +66,9 @@ class RoundingError:
 
 def _undithered_step(prepared: PreparedSweep, fit: SweepFit) -> tuple[float, float]:
     """The encoder's step [arcsec], and the share of its rounding's rms that is not dithered."""
-    sweep, variance = prepared.sweep, prepared.noise.white
-    if sweep.averaging is not None:
-        variance = sweep.averaging.variance_within(fit.measured_rig().compliance)
+    sweep = prepared.sweep
     step = sweep.encoder_step_arcsec or common_step(sweep.angle_arcsec)
-    left = sqrt(undithered(variance, step))
+    left = sqrt(undithered(prepared.variance_of_readings(fit.measured_rig().compliance), step))
     return step, left * sqrt(ROUNDING_RATIO) / step if step > 0 else 0.0
 
 

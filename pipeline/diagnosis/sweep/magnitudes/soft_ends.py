@@ -7,8 +7,6 @@ word's choice, and no row's.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
-from math import exp, log, sqrt
 
 import numpy as np
 
@@ -23,14 +21,11 @@ from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
 )
 from flexspline.pipeline.diagnosis.sweep.evidence.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.identification.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.magnitudes.other_fits import SHAPE_NATS, OtherFits, odds
 
 NARROWEST, WIDEST, WIDTHS = 0.01, 0.1, 24
 """Shares of the largest torque, in even steps of their logs. Narrower ends lie in the crossing, of which no
 row counts; a law that is wider is a wind-up (`../../causes/stiffness_hardening.py`, its limits)."""
-LEAST_NATS = 3.0
-"""As of other shapes (`SHAPE_NATS` of `magnitudes.py`)."""
-MOST_ODDS = 50.0
-"""Of the soft ends over the wind-up: their share is then 0.98. Judgement."""
 MOST_OF_GAP = 1.05
 """Of the gap, by which its ends may be softer than sharp: all of it, but for the noise. Judgement."""
 CURVES = ("?torque_Nm", "?angle_arcsec")
@@ -47,28 +42,17 @@ WITHOUT = tuple(
 """Owners that soft ends may replace."""
 
 
-@dataclass(frozen=True)
-class SoftEnds:
-    """The best fit with soft ends of the gap and no wind-up; `share` : how likely it is, of the two."""
+def soft_ends(fit: SweepFit) -> OtherFits:
+    """The best fit of the same record with soft ends of the gap in place of its wind-up.
 
-    fit: SweepFit
-    share: float
-
-    def deviation(self, size: float, cause: str) -> float:
-        """Of a cause's size by the other explanation, in which it may be missing."""
-        other = self.fit.magnitudes().get(cause, known_causes()[cause].none)
-        return sqrt(self.share) * abs(size - other)
-
-
-def soft_ends(fit: SweepFit) -> SoftEnds | None:
-    """The same record without its wind-up; None where nothing may be one, or no gap softens by so much.
+    No fit where nothing may be a wind-up, or no gap softens by so much.
 
     What a law leaves of its best shape weighs as in the doubt of sizes: no gear has one of these forms.
     """
     evidence, chosen = fit.evidence, fit.posterior.terms
     owners = {t.owner for t in fit.regressors}
     if not owners & {HARDENING, *CURVES}:
-        return None
+        return OtherFits()
     wider = with_terms(evidence, *_terms(evidence))
     search = Search(wider, lambda term: False)
     others: dict[tuple[int, ...], Candidate] = {}
@@ -82,17 +66,17 @@ def soft_ends(fit: SweepFit) -> SoftEnds | None:
         soft = fit_regressors(wider, other.terms)
         if 0 < float(soft.posterior.mean[-1]) < MOST_OF_GAP * soft.measured_rig().gap_arcsec:
             gained = other.log_evidence - search.candidate(chosen).log_evidence
-            ratio = exp(min(gained / _shape_nats(fit, owners), log(MOST_ODDS)))
-            return SoftEnds(soft, ratio / (1 + ratio))
-    return None
+            ratio = odds(gained, _shape_nats(fit, owners))
+            return OtherFits((soft,), (ratio / (1 + ratio),))
+    return OtherFits()
 
 
 def _shape_nats(fit: SweepFit, owners: Collection[str]) -> float:
     """Nats by which one law is better than another, though neither is the gear's."""
     if HARDENING not in owners:
-        return LEAST_NATS
+        return SHAPE_NATS
     left = known_causes()[HARDENING].shape_doubt * effect_size(fit, HARDENING)
-    return max(LEAST_NATS, left**2 / 2)
+    return max(SHAPE_NATS, left**2 / 2)
 
 
 def _terms(evidence: GaussianEvidence) -> tuple[list[Regressor], list[np.ndarray]]:

@@ -44,11 +44,8 @@ def rounding_of_angle(prepared: PreparedSweep, fit: SweepFit) -> Rounding:
 
     Means of a programme in step with the encoder keep all of it.
     """
-    angle, averaging = prepared.sweep.angle_arcsec, prepared.sweep.averaging
-    step, variance = prepared.sweep.encoder_step_arcsec, prepared.noise.white
-    if averaging is not None:
-        variance = averaging.variance_within(fit.measured_rig().compliance)
-    left = sqrt(undithered(variance, step))
+    angle, step = prepared.sweep.angle_arcsec, prepared.sweep.encoder_step_arcsec
+    left = sqrt(undithered(prepared.variance_of_readings(fit.measured_rig().compliance), step))
     is_steps = step >= FINEST_ENCODER * (angle.max() - angle.min())
     return Rounding(step, left, is_steps and _is_seen(left, prepared))
 
