@@ -11,7 +11,8 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.axisymmetric.torsion_at_points import TorsionAtPoints
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.peak import FieldWithoutCuts, stress_field, superposed_field
+from flexspline.fea.solid.peak import stress_field
+from flexspline.fea.solid.superposed_stress import FieldWithoutCuts, superposed_field
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -18,25 +18,6 @@ from flexspline.fea.types import Elastic, SolidField, StressPeak, TetMesh
 LATTICE = 6
 """Steps along the sides of every boundary facet of the lattice on which stresses are evaluated. The peak then
 does not depend on where nodes happen to lie. Judgement."""
-HIGH_SHARE = 0.8
-"""Of the largest stress that counts at a node: facets with at least that are evaluated at their lattice
-points, not interpolated between nodes. On the others interpolation is no 20 % off. Judgement."""
-PLANES = 8
-"""Nodes nearest to a place of the meridian, in whose planes the stress there is looked at. Judgement."""
-
-
-@dataclass(frozen=True)
-class FieldWithoutCuts:
-    """Field of the body of revolution that a part is without holes and keyway.
-
-    Attributes
-    ----------
-    at : displacements (k, 3) [mm] and stresses (k, 3, 3) [MPa] at points (k, 3) [mm], all Cartesian.
-    places : (j, 2) the meridian's own nodes r, z [mm].
-    """
-
-    at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-    places: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -79,77 +60,30 @@ def stress_field(
     SolveError : no point is far enough from every edge.
     """
     stress = nodal_stress(mesh, displacement, material)
-    facets = _outer_facets(mesh)
-    on_surface = Stresses(_on_lattice(mesh.nodes, facets), _on_lattice(stress, facets))
-    peak = _peak((Stresses(mesh.nodes, stress), on_surface), edges)
+    facets = outer_facets(mesh)
+    on_surface = Stresses(on_lattice(mesh.nodes, facets), on_lattice(stress, facets))
+    peak = largest_of((Stresses(mesh.nodes, stress), on_surface), edges)
     return SolidField(mesh, load_case, displacement, von_mises(stress), peak)
 
 
-def superposed_field(
-    mesh: TetMesh,
-    change: np.ndarray,
-    without_cuts: FieldWithoutCuts,
-    material: Elastic,
-    load_case: str,
-    edges: SharpEdges,
-) -> SolidField:
-    """Return `stress_field`, where the field of the part without holes and keyway is known at any point.
-
-    `change` (n, 3) [mm] is what these cuts change of the displacement. Only its stress has the mesh's error,
-    which for the whole displacement is large at singular patch edges far from the cuts too: a shaft with 8
-    holes in its flange had 4.32 MPa beside its grip in place of 3.57.
-    """
-    displacement, nodal = without_cuts.at(mesh.nodes)
-    changed = nodal_stress(mesh, change, material)
-    stress = changed + nodal
-    facets = _outer_facets(mesh)
-    points, on_surface = _on_lattice(mesh.nodes, facets), _on_lattice(stress, facets)
-    # of nodes, where nothing is interpolated: beside a singular edge interpolation is far too high
-    counted = von_mises(stress)[edges.away(mesh.nodes) >= edges.exclusion_mm].max(initial=0.0)
-    of_facet = von_mises(on_surface).reshape(len(facets), -1)
-    high = of_facet.max(axis=1) >= HIGH_SHARE * counted
-    rows = np.repeat(high, of_facet.shape[1])
-    on_surface[rows] += without_cuts.at(points[rows])[1] - _on_lattice(nodal, facets[high])
-    peak = _peak(
-        (
-            Stresses(mesh.nodes, stress),
-            Stresses(points, on_surface),
-            _between_nodes(mesh, changed, without_cuts),
-        ),
-        edges,
-    )
-    return SolidField(mesh, load_case, displacement + change, von_mises(stress), peak)
-
-
-def _between_nodes(mesh: TetMesh, changed: np.ndarray, without_cuts: FieldWithoutCuts) -> Stresses:
-    """Return stresses at the meridian's own nodes, in planes of the mesh's nodes.
-
-    Beside singular edges these are much closer to each other than the mesh's. `changed` (n, 3, 3) is taken
-    from the nodes nearest in r and z.
-    """
-    from scipy.spatial import cKDTree
-
-    x, y, z = mesh.nodes.T
-    _, near = cKDTree(np.stack([np.hypot(x, y), z], axis=1)).query(without_cuts.places, PLANES)
-    phi = np.arctan2(y, x)[near]
-    r, height = (np.broadcast_to(a[:, None], phi.shape) for a in without_cuts.places.T)
-    points = np.stack([r * np.cos(phi), r * np.sin(phi), height], axis=2).reshape(-1, 3)
-    return Stresses(points, changed[near.ravel()] + without_cuts.at(points)[1])
-
-
-def _outer_facets(mesh: TetMesh) -> np.ndarray:
+def outer_facets(mesh: TetMesh) -> np.ndarray:
     """Return the facets (k, 6) that are no symmetry plane."""
     return mesh.facets[["symmetry" not in mesh.patches[p] for p in mesh.facet_patch]]
 
 
-def _on_lattice(nodal: np.ndarray, facets: np.ndarray) -> np.ndarray:
+def on_lattice(nodal: np.ndarray, facets: np.ndarray) -> np.ndarray:
     """Return nodal values (n, ...) at the lattice points of facets (k, 6), facet by facet."""
     values = lattice_values(LATTICE).T.copy()  # (q, 6)
     return np.einsum("qi,ki...->kq...", values, nodal[facets]).reshape(-1, *nodal.shape[1:])
 
 
-def _peak(stresses: Sequence[Stresses], edges: SharpEdges) -> StressPeak:
-    """Return the largest von Mises stress of those far enough from the edges."""
+def largest_of(stresses: Sequence[Stresses], edges: SharpEdges) -> StressPeak:
+    """Return the largest von Mises stress of those that count.
+
+    Raises
+    ------
+    SolveError : no point is far enough from every edge.
+    """
     points = np.concatenate([s.points for s in stresses])
     mises = np.concatenate([von_mises(s.values) for s in stresses])
     away = edges.away(points)

@@ -40,11 +40,14 @@ def test_holes_in_the_flange_leave_the_stress_far_from_them(
 ) -> None:
     with_holes = shaft(tmp_path, design)
     without = replace(with_holes, part=with_holes.part.without_holes())
-    peak, known = (torque_stress.torque_field(part).peak for part in (with_holes, without))
+    field, known = torque_stress.torque_field(with_holes), torque_stress.torque_field(without).peak
+    peak = field.peak
     # the meridian's is refined to 0.5 %; the whole field on the mesh of K is 11 and 23 % off
     assert peak.mises_MPa == pytest.approx(known.mises_MPa, rel=0.01)
     assert peak.at_mm[2] == pytest.approx(known.at_mm[2], abs=with_holes.part.exclusion_mm)
     assert peak.at_excluded_border == known.at_excluded_border == at_border
+    # nodes nearer to the grip's edge are drawn with means over their elements, which are no finer than that
+    assert field.mises.max() < 1.5 * peak.mises_MPa
 
 
 def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
