@@ -7,6 +7,7 @@ import { state } from "./state.js";
 
 const BRIEF = ["K_b_Nm_per_rad", "K_e_Nm_per_rad", "wave_generator_peak_mises_MPa"];
 const GEAR = "gear"; // its figures and its curve come together
+const SMALL = matchMedia("(max-width: 419px)"); // name, figure and bounds of a row do not fit beside one another
 const DRAWN = "backlash"; // the sum and its line come together, and so have one number
 
 export class Figures {
@@ -19,6 +20,7 @@ export class Figures {
     this.peaks = el("section", { class: "peaks" });
     this.backlash = el("section", {});
     this.gear = el("section", { id: "gear" });
+    SMALL.addEventListener("change", () => this.draw());
     root.append(this.whose, this.stiffness, this.work, this.peaks, this.backlash, this.gear);
   }
 
@@ -123,9 +125,9 @@ export class Figures {
     return el("h2", {}, text, el("span", { class: "unit" }, unit));
   }
 
-  // Beside other columns, bounds and places stand below their figure.
+  // Beside other columns, and in a small window, bounds and places stand below their figure.
   get narrow() {
-    return Boolean(this.seen.solid || this.seen.pinned);
+    return Boolean(this.seen.solid || this.seen.pinned || SMALL.matches);
   }
 
   head(third) {
