@@ -12,6 +12,7 @@ from flexspline.results.doubt import NOT_STATED, stated_only
 from flexspline.results.numbers import grouped
 from flexspline.results.peaks import BORDER, HALF_SEAT, MEANING, WITHOUT_HOLES, marked
 from flexspline.results.quantities import QUANTITIES
+from flexspline.results.streams import files_in
 from flexspline.results.terminal import prose, row
 
 NAMES = 64
@@ -65,5 +66,5 @@ def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NO
         lines += row((f"assumed for the whole gear: {keys}",))
     for a in record.get("assumed", ()):
         lines += row((f"assumed: {a['key']} = {plain_number(a['value'], 4)}, {a['why']}",))
-    lines.append(f"files in {folder}")
+    lines.append(files_in(folder))
     return "\n".join(lines)

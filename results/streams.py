@@ -87,6 +87,20 @@ def _libraries_write_to_stderr() -> Iterator[None]:
         sys.stdout = ours
 
 
+def files_in(folder: str | os.PathLike[str]) -> str:
+    """The line that names a folder of results.
+
+    Where letters beyond ASCII become plain ones, the name is written as a string of Python, which names the
+    folder that exists.
+    """
+    name = str(folder)
+    narrow = sys.stdout.encoding == ASCII and not name.isascii()
+    letters = os.fsencode(name).decode(
+        errors="surrogateescape"
+    )  # not the bytes of a C locale's name
+    return f"files in {ascii(letters) if narrow else name}"
+
+
 def _prepare(stream: io.TextIOWrapper) -> None:
     wide = codecs.lookup(stream.encoding).name == "utf-8"
     narrow = not wide and (not stream.isatty() or codecs.lookup(stream.encoding).name == "ascii")

@@ -24,6 +24,7 @@ from flexspline.results.diagnosis.words import (
 )
 from flexspline.results.numbers import figures_text
 from flexspline.results.sentences import capital
+from flexspline.results.streams import files_in
 from flexspline.results.terminal import prose, row
 
 BETWEEN = 2
@@ -62,7 +63,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     for note in notes(diagnosis):
         lines += prose(f"note: {note}", "  ", "    ")
     lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",))
-    lines.append(f"files in {folder}")
+    lines.append(files_in(folder))
     return "\n".join(lines)
 
 

@@ -151,8 +151,13 @@ def ticks(high: float) -> tuple[list[float], list[str]]:
 
     steps = MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, high)
     inside = [float(s) for s in steps if 0 <= s < 0.9 * high]
-    places = max(len(f"{s:.6g}".partition(".")[2]) for s in inside)
+    places = max(len(_shortest(s).partition(".")[2]) for s in inside)
     return inside, [f"{s:.{places}f}" if s else "0" for s in inside]
+
+
+def _shortest(number: float) -> str:
+    """Six figures at most, without trailing zeros and without an exponent."""
+    return np.format_float_positional(number, precision=6, fractional=False, trim="-")
 
 
 def _overlay(figure: Figure) -> Axes:

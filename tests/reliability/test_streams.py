@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import pty
@@ -128,6 +129,9 @@ def test_every_quick_command(env: dict[str, str], tmp_path: Path) -> None:
     ]
     texts = said(tmp_path, env, commands)
     assert all(text and text.isascii() for text in texts)
+    for text in texts[3:-1]:
+        named = text.decode().splitlines()[-1].removeprefix("files in ")
+        assert (tmp_path / ast.literal_eval(named)).is_dir()
     written = json.loads((tmp_path / "gerät.out" / "result.json").read_bytes().decode("utf-8"))
     assert written["design"] == "Zähne µ 齿"
     assert json.loads(texts[-1])["design"] == "Zähne µ 齿"
