@@ -43,7 +43,7 @@ class SolidSpace:
         node[n + of_cells] = mesh.cells[:, 4:]
         facets = _facet_numbers(corners, mesh.facets[:, :3])
         named = {p: facets[mesh.facet_patch == i] for i, p in enumerate(mesh.patches) if p}
-        curved = MeshTet2(np.ascontiguousarray(mesh.nodes[node].T), corners.T, sort_t=False)
+        curved = MeshTet2(np.ascontiguousarray(mesh.nodes[node].T), np.ascontiguousarray(corners.T), sort_t=False)
         curved = curved.with_boundaries({p: mine for p, mine in named.items() if len(mine)})
         return cls(curved, mesh.cells, node)
 
