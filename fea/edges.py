@@ -6,6 +6,8 @@ import numpy as np
 
 SIDES = np.array([[0, 1], [1, 2], [2, 0]])
 """Edges of a triangle."""
+TET_EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
+"""Edges of a tetrahedron, in the order of its middle nodes."""
 
 
 def edge_numbers(pairs: np.ndarray, nodes: int) -> np.ndarray:
@@ -17,3 +19,13 @@ def edge_numbers(pairs: np.ndarray, nodes: int) -> np.ndarray:
 def distinct_edges(pairs: np.ndarray, nodes: int) -> np.ndarray:
     """Return each of the edges (..., 2) once, as (e, 2) with the lesser node first."""
     return np.column_stack(np.divmod(np.unique(edge_numbers(pairs, nodes)), nodes))
+
+
+def numbered_edges(pairs: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return `distinct_edges` and the number (...) among them of each of the edges (..., 2).
+
+    scikit-fem numbers the edges of a mesh in the same order.
+    """
+    numbers = edge_numbers(pairs, nodes)
+    distinct, of = np.unique(numbers, return_inverse=True)
+    return np.column_stack(np.divmod(distinct, nodes)), of.reshape(numbers.shape)

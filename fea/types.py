@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from flexspline.geometry.material import ElasticMaterial
+
+if TYPE_CHECKING:
+    from flexspline.fea.solid.space import SolidSpace
 
 NMM_PER_NM = 1000.0
 """N·mm in one N·m: inside lengths are mm, stiffnesses are told in N·m/rad."""
@@ -62,6 +66,13 @@ class TetMesh:
     facet_patch: np.ndarray
     patches: tuple[str, ...]
     sector_deg: float
+
+    @cached_property
+    def space(self) -> SolidSpace:
+        """The mesh as scikit-fem has it, made once."""
+        from flexspline.fea.solid.space import SolidSpace
+
+        return SolidSpace.of(self)
 
     def on(self, patch: str) -> np.ndarray:
         """Facets (j, 6) of a patch."""

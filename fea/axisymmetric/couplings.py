@@ -16,8 +16,7 @@ from skfem import BilinearForm
 
 from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
-from flexspline.fea.kept_entries import starts_of
-from flexspline.fea.own_assembly import NodePairs
+from flexspline.fea.kept_entries import NodePairs, starts_of
 from flexspline.fea.types import Elastic
 
 RR = BilinearForm(lambda u, v, w: v.grad[0] * u.grad[0] * w.x[0])

@@ -11,7 +11,7 @@ from skfem.element import DiscreteField
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.space import Space
-from flexspline.fea.own_assembly import triangles_of
+from flexspline.fea.axisymmetric.triangle_search import triangles_of
 
 OUTSIDE = 0.01
 """Share of the mesh's size that a point may lie outside. A mesher's walls may begin 1e-6 mm outside, points

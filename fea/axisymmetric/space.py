@@ -11,11 +11,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from skfem import ElementTriP2
+from skfem import Basis, ElementTriP2, MeshTri, MeshTri2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
-from flexspline.fea.edges import edge_numbers
-from flexspline.fea.own_assembly import CurvedTriangles, ScalarBasis, Triangles
+from flexspline.fea.edges import SIDES, distinct_edges, edge_numbers
 from flexspline.fea.quadratic_triangle import shape_functions
 
 
@@ -83,14 +82,13 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
     MeshingError
         If a curved edge folds its triangle.
     """
-    straight_edges = _linear_mesh(mesh, mesh.points)
-    facets = _outline_facets(straight_edges, mesh)
-    middles = straight_edges.p[:, straight_edges.facets].mean(axis=1)
-    middles[:, facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment).T
+    edges, facets = _edges(mesh)
+    middles = mesh.points[edges].mean(axis=1)
+    middles[facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
     named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
-    quadratic = CurvedTriangles(np.hstack([straight_edges.p, middles]), straight_edges.t)
+    quadratic = MeshTri2(_by_rows(np.vstack([mesh.points, middles])), _corners(mesh))
     quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
-    basis = ScalarBasis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
+    basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
     jacobian = basis.mapping.detDF(basis.X)
     # corners stand in any sense, so either sign may come, but one per triangle
     folded = (jacobian * jacobian[:, :1] <= 0).any(axis=1)
@@ -106,29 +104,36 @@ def straight(
 
     `boundaries` gives the segments of the outline that each name stands for.
     """
-    linear = _linear_mesh(mesh, vertices)
-    facets = _outline_facets(linear, mesh)
-    linear = linear.with_boundaries(_named(boundaries, mesh, facets))
-    return _space(ScalarBasis(linear, ElementTriP2(), intorder=degree), mesh, facets)
+    _, facets = _edges(mesh)
+    linear = MeshTri(_by_rows(vertices), _corners(mesh)).with_boundaries(
+        _named(boundaries, mesh, facets)
+    )
+    return _space(Basis(linear, ElementTriP2(), intorder=degree), mesh, facets)
 
 
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
     """Return a `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
-    mesh = Triangles(np.ascontiguousarray(vertices.T), old.mesh.t)
-    basis = ScalarBasis(mesh, old.elem, intorder=degree, dofs=old.dofs)
+    mesh = MeshTri(_by_rows(vertices), old.mesh.t)
+    basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
     return Space(basis, space.rim, space.numbers)
 
 
-def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
-    triangles = np.sort(mesh.triangles, axis=1)
-    return Triangles(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
+def _by_rows(points: np.ndarray) -> np.ndarray:
+    """Points (n, 2) as scikit-fem takes them, (2, n)."""
+    return np.ascontiguousarray(points.T)
 
 
-def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
-    """scikit-fem's number (k,) of each boundary edge of the meridian."""
-    theirs, ours = (edge_numbers(e, len(meridian.points)) for e in (mesh.facets.T, meridian.edges))
-    return np.searchsorted(theirs, ours)
+def _corners(mesh: MeridianMesh) -> np.ndarray:
+    """The triangles' corners (3, m), rising."""
+    return _by_rows(np.sort(mesh.triangles, axis=1))
+
+
+def _edges(mesh: MeridianMesh) -> tuple[np.ndarray, np.ndarray]:
+    """The edges (e, 2) in scikit-fem's order, and the number (k,) of each of the meridian's boundary."""
+    n = len(mesh.points)
+    edges = distinct_edges(mesh.triangles[:, SIDES], n)
+    return edges, np.searchsorted(edge_numbers(edges, n), edge_numbers(mesh.edges, n))
 
 
 def _named(
@@ -147,7 +152,7 @@ def at_points(space: Space, at: np.ndarray) -> Any:
     """Return the basis at other points (2, q) of each reference triangle, to evaluate fields there."""
     basis = space.basis
     weights = np.full(at.shape[1], 0.5 / at.shape[1])
-    return ScalarBasis(
+    return Basis(
         basis.mesh, basis.elem, mapping=basis.mapping, quadrature=(at, weights), dofs=basis.dofs,
         disable_doflocs=True,
     )  # fmt: skip

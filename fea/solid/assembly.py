@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
 
-from flexspline.fea.own_assembly import NodePairs
+from flexspline.fea.kept_entries import NodePairs
 from flexspline.fea.solid.elements import basis_of
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic

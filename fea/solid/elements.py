@@ -1,4 +1,4 @@
-"""Quadratic tetrahedra through scikit-fem: meshes, bases, curvature of elements."""
+"""Quadratic tetrahedra through scikit-fem: bases, curvature of elements."""
 
 from __future__ import annotations
 
@@ -10,42 +10,22 @@ CHUNK_CELLS = 1_000
 """Cells whose Jacobians are computed at once: 1.5 MB, which fit the processor's cache."""
 
 
-def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
-    """Return scikit-fem's MeshTet of corners (n, 3) and tets (m, 4)."""
-    from flexspline.fea.own_assembly import Tetrahedra
-
-    return Tetrahedra(np.ascontiguousarray(corners.T), np.ascontiguousarray(tets.T), sort_t=False)
-
-
-def quadratic_mesh(nodes: np.ndarray, cells: np.ndarray) -> Any:
-    """Return scikit-fem's curved MeshTet2; it numbers the middle nodes by its own edges."""
-    from flexspline.fea.own_assembly import CurvedTetrahedra
-
-    return CurvedTetrahedra(
-        np.ascontiguousarray(nodes.T), np.ascontiguousarray(cells.T), sort_t=False
-    )
-
-
 def basis_of(
     curved: Any,
     elements: np.ndarray | None = None,
     quadrature: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Any:
-    """Return scikit-fem's basis on all or some elements of a `quadratic_mesh`.
+    """Return scikit-fem's basis on all or some elements of a `SolidSpace.curved`.
 
     `quadrature` is points (q, 3) and weights (q,); degree 4 when absent, exact for P2 on straight edges.
     The nodes have scikit-fem's numbers; an element's ten are in the order of `TetMesh.cells`.
     """
-    from skfem import Basis, ElementTetP2, ElementTriP2
-
-    from flexspline.fea.own_assembly import KeptMapping
+    from skfem import Basis, ElementTetP2
 
     points, weights = quadrature or tet_rule()
-    element = ElementTetP2()
     return Basis(
-        curved, element, mapping=KeptMapping(curved, element, ElementTriP2()),
-        quadrature=(np.ascontiguousarray(points.T), weights), elements=elements,
-        dofs=curved.dofs, disable_doflocs=True,
+        curved, ElementTetP2(), quadrature=(np.ascontiguousarray(points.T), weights),
+        elements=elements, dofs=curved.dofs, disable_doflocs=True,
     )  # fmt: skip
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.edges import SIDES, edge_numbers
+from flexspline.fea.edges import SIDES, TET_EDGES, edge_numbers, numbered_edges
 from flexspline.fea.errors import MeshQualityError
-from flexspline.fea.solid.elements import jacobian_ratio, linear_mesh
+from flexspline.fea.solid.elements import jacobian_ratio
 
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. One element in ten
@@ -28,14 +28,10 @@ def with_middles(
     corners: np.ndarray, tets: np.ndarray, faces: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return edges (e, 2), ten-node cells and six-node facets; edge i has node len(corners) + i."""
-    mesh = linear_mesh(corners, tets)
-    edges = mesh.edges.T
     n = len(corners)
-    cells = np.hstack([tets, mesh.t2e.T + n])
-    key = edge_numbers(edges, n)
-    order = np.argsort(key)
-    of_sides = order[np.searchsorted(key[order], edge_numbers(faces[:, SIDES], n))]
-    return edges, cells, np.hstack([faces, of_sides + n])
+    edges, of_cells = numbered_edges(tets[:, TET_EDGES], n)
+    of_faces = np.searchsorted(edge_numbers(edges, n), edge_numbers(faces[:, SIDES], n))
+    return edges, np.hstack([tets, of_cells + n]), np.hstack([faces, of_faces + n])
 
 
 def straightened(

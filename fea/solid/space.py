@@ -1,7 +1,7 @@
 """A solid mesh as a scikit-fem space: quadratic, with its patches as named boundaries.
 
 `TetMesh` numbers middle nodes as its maker did (an unfolded sector copy by copy, a test's brick by bricks),
-scikit-fem by its own edges. Only this module converts one into the other.
+scikit-fem by rising corners of its edges. Only this module converts one into the other.
 """
 
 from __future__ import annotations
@@ -10,11 +10,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from skfem import ElementTetP2, FacetBasis, MappingAffine
+from skfem import ElementTetP2, FacetBasis, MappingAffine, MeshTet2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from flexspline.fea.solid.elements import determinants, quadratic_mesh, tet_rule
+from flexspline.fea.edges import TET_EDGES, numbered_edges
+from flexspline.fea.solid.elements import determinants, tet_rule
+from flexspline.fea.solid.quadratic import CORNER_FACES
 from flexspline.fea.types import TetMesh
 
 
@@ -34,12 +36,15 @@ class SolidSpace:
 
     @classmethod
     def of(cls, mesh: TetMesh) -> SolidSpace:
-        curved = quadratic_mesh(mesh.nodes, mesh.cells)
-        facets = _facet_numbers(curved, mesh)
+        corners = mesh.cells[:, :4]
+        n = int(corners.max()) + 1
+        edges, of_cells = numbered_edges(corners[:, TET_EDGES], n)
+        node = np.arange(n + len(edges))
+        node[n + of_cells] = mesh.cells[:, 4:]
+        facets = _facet_numbers(corners, mesh.facets[:, :3])
         named = {p: facets[mesh.facet_patch == i] for i, p in enumerate(mesh.patches) if p}
+        curved = MeshTet2(np.ascontiguousarray(mesh.nodes[node].T), np.ascontiguousarray(corners.T), sort_t=False)
         curved = curved.with_boundaries({p: mine for p, mine in named.items() if len(mine)})
-        node = np.empty(len(mesh.nodes), int)
-        node[curved.dofs.element_dofs.T] = mesh.cells
         return cls(curved, mesh.cells, node)
 
     def on(self, patch: str) -> np.ndarray:
@@ -77,14 +82,12 @@ class SolidSpace:
         return basis
 
 
-def _facet_numbers(curved: Any, mesh: TetMesh) -> np.ndarray:
-    """scikit-fem's number (k,) of each facet; its own are in rising order of their corners."""
-    n = int(mesh.cells[:, :4].max()) + 1
-    theirs, ours = (
-        (corners[0] * n + corners[1]) * n + corners[2]
-        for corners in (
-            curved.facets.astype(np.int64),
-            np.sort(mesh.facets[:, :3], axis=1).T.astype(np.int64),
-        )
-    )
-    return np.searchsorted(theirs, ours)
+def _facet_numbers(tets: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """scikit-fem's number (k,) of each facet of corners (k, 3), in rising order of their corners."""
+    n = int(tets.max()) + 1
+
+    def numbers(corners: np.ndarray) -> np.ndarray:
+        first, second, third = np.sort(corners, axis=-1).astype(np.int64).T
+        return (first * n + second) * n + third
+
+    return np.searchsorted(np.unique(numbers(tets[:, CORNER_FACES])), numbers(facets))

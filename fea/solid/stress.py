@@ -16,7 +16,6 @@ from flexspline.fea.solid.elements import (
     NODES,
     basis_of,
     displacement_gradient,
-    quadratic_mesh,
     reference_values,
 )
 from flexspline.fea.types import Elastic, TetMesh
@@ -38,16 +37,11 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
 
     `u` is (n, 3) Cartesian, mm.
     """
-    return _averaged(quadratic_mesh(mesh.nodes, mesh.cells), mesh, u, material)
-
-
-def _averaged(curved: Any, mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
-    """`nodal_stress` on the mesh as scikit-fem has it."""
     at_nodes = NODES, np.ones(len(NODES)) / len(NODES)
 
     def parts() -> Iterator[ElementValues]:
         for part in _parts(mesh.elements):
-            basis, cells = basis_of(curved, part, at_nodes), mesh.cells[part]
+            basis, cells = basis_of(mesh.space.curved, part, at_nodes), mesh.cells[part]
             local = _stress(basis, u[cells], material)
             yield cells, basis.dx.sum(axis=1), local.reshape(*cells.shape, 9)
 
@@ -82,11 +76,10 @@ class EnergyErrorEstimate:
 
 def energy_error(mesh: TetMesh, u: np.ndarray, material: Elastic) -> EnergyErrorEstimate:
     """Recovery estimate of ∫(σ − σh):C⁻¹:(σ − σh) per element."""
-    curved = quadratic_mesh(mesh.nodes, mesh.cells)
-    nodal = _averaged(curved, mesh, u, material).reshape(-1, 9)
+    nodal = nodal_stress(mesh, u, material).reshape(-1, 9)
     energy, error = np.empty((2, mesh.elements))
     for part in _parts(mesh.elements):
-        basis, cells = basis_of(curved, part), mesh.cells[part]
+        basis, cells = basis_of(mesh.space.curved, part), mesh.cells[part]
         raw = _stress(basis, u[cells], material)
         smooth = np.matmul(reference_values(basis.X.T), nodal[cells]).reshape(raw.shape)
         energy[part] = np.einsum("mq,mq->m", _twice_energy(raw, material), basis.dx)

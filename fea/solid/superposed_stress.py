@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.nodal_average import nodal_average
-from flexspline.fea.solid.elements import basis_of, quadratic_mesh, reference_values
+from flexspline.fea.solid.elements import basis_of, reference_values
 from flexspline.fea.solid.peak import SharpEdges, Stresses, largest_of, on_lattice, outer_facets
 from flexspline.fea.solid.stress import nodal_stress, von_mises
 from flexspline.fea.types import Elastic, SolidField, TetMesh
@@ -96,7 +96,7 @@ def _element_means(
 ) -> np.ndarray:
     """Return the stress (n, 3, 3) at every node, as the mean over some of its elements, a mask (m,)."""
     cells = mesh.cells[elements]
-    basis = basis_of(quadratic_mesh(mesh.nodes, mesh.cells), np.flatnonzero(elements))
+    basis = basis_of(mesh.space.curved, np.flatnonzero(elements))
     at = np.matmul(reference_values(basis.X.T), mesh.nodes[cells])
     values = without_cuts.at(at.reshape(-1, 3))[1].reshape(*at.shape[:2], 9)
     volume = basis.dx.sum(axis=1)

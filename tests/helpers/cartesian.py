@@ -13,12 +13,10 @@ from skfem import LinearForm
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.elements import (
     basis_of,
-    quadratic_mesh,
     reference_values,
     tet_rule,
 )
 from flexspline.fea.solid.model import Model, Supports
-from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
@@ -40,7 +38,7 @@ def cartesian_model(mesh: TetMesh, material: Elastic) -> Model:
 
 def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
     """Nodal forces (n, 3) of a traction given at points (..., 3) as vectors (..., 3)."""
-    space = SolidSpace.of(mesh)
+    space = mesh.space
     basis = space.facet_basis(patch, degree=6)
     at = np.asarray(basis.global_coordinates())
     forces = traction(np.moveaxis(at, 0, -1))
@@ -53,7 +51,7 @@ def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
 
 def body_load(mesh: TetMesh, force: np.ndarray) -> np.ndarray:
     """Nodal forces (n, 3) of a constant force (3,) per volume."""
-    weights = basis_of(quadratic_mesh(mesh.nodes, mesh.cells)).dx
+    weights = basis_of(mesh.space.curved).dx
     shares = np.einsum("mq,qi->mi", weights, reference_values(tet_rule()[0]))
     load = np.zeros_like(mesh.nodes)
     np.add.at(load, mesh.cells, shares[..., None] * force)

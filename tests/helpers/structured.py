@@ -7,8 +7,7 @@ from math import degrees
 
 import numpy as np
 
-from flexspline.fea.solid.elements import linear_mesh
-from flexspline.fea.solid.quadratic import boundary_faces
+from flexspline.fea.solid.quadratic import boundary_faces, with_middles
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
@@ -53,23 +52,15 @@ def bent_box(
         cell = np.array([np.diff(axis).min() for axis in (a, b, c)])
         rng = np.random.default_rng(1)
         points[inside] += rng.uniform(-shake, shake, (inside.sum(), 3)) * cell
-    linear = linear_mesh(points, tets)
-    tets = _positive(points, linear.t.T)
-    linear = linear_mesh(points, tets)
-    edges = linear.edges.T
-    n = len(points)
-    straight = np.vstack([points, points[edges].mean(axis=1)])
+    tets = _positive(points, tets)
     faces = boundary_faces(tets)
-    lookup = {tuple(sorted(e)): n + i for i, e in enumerate(edges.tolist())}
-    sides = ((0, 1), (1, 2), (2, 0))
-    middles = [[lookup[tuple(sorted((f[i], f[j])))] for i, j in sides] for f in faces.tolist()]
-    facets = np.hstack([faces, np.array(middles)])
+    edges, cells, facets = with_middles(points, tets, faces)
+    straight = np.vstack([points, points[edges].mean(axis=1)])
     names = ("", *patches)
     patch = np.zeros(len(facets), int)
     centres = points[faces].mean(axis=1)
     for i, rule in enumerate(patches.values()):
         patch[rule(centres)] = i + 1
-    cells = np.hstack([tets, linear.t2e.T + n])
     return TetMesh(mapping(straight), cells, facets, patch, names, sector_deg)
 
 

@@ -19,7 +19,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
+from flexspline.fea.solid.elements import basis_of, displacement_gradient
 from flexspline.fea.solid.field_solver import FULL_SCALES
 from flexspline.fea.solid.load_cases import lobes, torsion
 from flexspline.fea.solid.model import Model
@@ -92,7 +92,7 @@ def exact(body: Part) -> Stiffness:
 def energy_K(solved: Solved, material: Elastic, keep: Any) -> float:
     """K [N·m/rad] of the field where `keep` says so of points (m, q, 3), by quadrature, whole part."""
     mesh = solved.mesh
-    basis = basis_of(quadratic_mesh(mesh.nodes, mesh.cells))
+    basis = basis_of(mesh.space.curved)
     grad = displacement_gradient(basis, solved.displacement[mesh.cells])
     strain = (grad + grad.swapaxes(2, 3)) / 2
     trace = np.trace(strain, axis1=2, axis2=3)

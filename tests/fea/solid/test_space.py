@@ -35,6 +35,7 @@ MESHES = {
 def test_a_boundary_has_the_nodes_of_its_facets(mesh: TetMesh) -> None:
     space = SolidSpace.of(mesh)
     assert np.array_equal(space.curved.doflocs.T, mesh.nodes[space.node])
+    assert np.array_equal(space.node[space.curved.dofs.element_dofs.T], mesh.cells)
     for patch in filter(None, mesh.patches):
         assert np.array_equal(space.on(patch), np.unique(mesh.on(patch)))
 
