@@ -1,4 +1,4 @@
-"""Edges of triangles and tetrahedra by the numbers of their two nodes."""
+"""Edges and faces of triangles and tetrahedra; edges by the numbers of their two nodes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ SIDES = np.array([[0, 1], [1, 2], [2, 0]])
 """Edges of a triangle."""
 TET_EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
 """Edges of a tetrahedron, in the order of its middle nodes."""
+CORNER_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+"""Outward faces of a positively oriented tetrahedron; face i is opposite corner i."""
 
 
 def edge_numbers(pairs: np.ndarray, nodes: int) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from flexspline.geometry.material import ElasticMaterial
 
 if TYPE_CHECKING:
-    from flexspline.fea.solid.space import SolidSpace
+    from flexspline.fea.curved_mesh import CurvedMesh
 
 NMM_PER_NM = 1000.0
 """N·mm in one N·m: inside lengths are mm, stiffnesses are told in N·m/rad."""
@@ -68,11 +68,11 @@ class TetMesh:
     sector_deg: float
 
     @cached_property
-    def space(self) -> SolidSpace:
-        """The mesh as scikit-fem has it, made once."""
-        from flexspline.fea.solid.space import SolidSpace
+    def curved(self) -> CurvedMesh:
+        """The mesh as scikit-fem has it, numbered once."""
+        from flexspline.fea.curved_mesh import CurvedMesh
 
-        return SolidSpace.of(self)
+        return CurvedMesh.of(self)
 
     def on(self, patch: str) -> np.ndarray:
         """Facets (j, 6) of a patch."""

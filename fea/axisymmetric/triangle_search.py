@@ -17,8 +17,8 @@ TOUCH = 1e-9
 def triangles_of(mesh: Any, points: np.ndarray) -> np.ndarray:
     """Return the triangle (k,) of scikit-fem's mesh that holds each point (2, k); −1: none.
 
-    Its own finder looks at all triangles for all points where five are not enough for one of them: 2.6 s for
-    9 000 points in 9 000 triangles, 0.1 s here.
+    Its own finder raises an error if one point is in none, and looks at all triangles for all points where
+    five are not enough for one of them: 2.6 s and 2.5 GB for 9 000 points in 9 000 triangles, 0.1 s here.
     """
     from scipy.spatial import cKDTree
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.solid.quadratic import CORNER_FACES
+from flexspline.fea.edges import CORNER_FACES
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 

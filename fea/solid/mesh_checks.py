@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.flatness import longest_edges
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.percent import percent
@@ -48,7 +49,7 @@ def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
     ------
     MeshQualityError : one of them is off.
     """
-    space = mesh.space
+    space = SolidSpace.of(mesh)
     for what, right in wanted.items():
         actual = float((space.volumes if what == VOLUME else space.areas(what)).sum())
         if not abs(actual / right - 1) < SIZE_TOLERANCE:
@@ -70,7 +71,7 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
             raise MeshQualityError(
                 f"a node of {_in_words(plane.patch)} lies {off:.3g} mm off the plane"
             )
-    space = mesh.space
+    space = SolidSpace.of(mesh)
     volume = space.volumes.sum()
     if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
         raise MeshQualityError(

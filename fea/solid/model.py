@@ -49,8 +49,8 @@ class Model:
     @classmethod
     def in_frames(cls, mesh: TetMesh, material: Elastic, frames: NodeFrames) -> Model:
         """Assemble with components along the axes given at each node."""
-        matrix = stiffness_matrix(mesh.space, material, frames)
-        return cls(mesh, material, frames, matrix, mesh.space)
+        space = SolidSpace.of(mesh)
+        return cls(mesh, material, frames, stiffness_matrix(space, material, frames), space)
 
     def on(self, patch: str) -> np.ndarray:
         """Return the sorted nodes on a patch, its edges included."""

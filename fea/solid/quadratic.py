@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.edges import SIDES, TET_EDGES, edge_numbers, numbered_edges
+from flexspline.fea.edges import (
+    CORNER_FACES,
+    SIDES,
+    TET_EDGES,
+    edge_numbers,
+    numbered_edges,
+)
 from flexspline.fea.errors import MeshQualityError
 from flexspline.fea.solid.elements import jacobian_ratio
 
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. One element in ten
 thousand below it showed ten times the true stress at its nodes."""
-CORNER_FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
-"""Outward faces of a positively oriented tetrahedron; face i is opposite corner i."""
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:

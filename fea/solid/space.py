@@ -1,8 +1,4 @@
-"""A solid mesh as a scikit-fem space: quadratic, with its patches as named boundaries.
-
-`TetMesh` numbers middle nodes as its maker did (an unfolded sector copy by copy, a test's brick by bricks),
-scikit-fem by rising corners of its edges. Only this module converts one into the other.
-"""
+"""A solid mesh as a scikit-fem space: quadratic fields, and the nodes, areas and values on its patches."""
 
 from __future__ import annotations
 
@@ -10,13 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from skfem import ElementTetP2, FacetBasis, MappingAffine, MeshTet2
+from skfem import ElementTetP2, FacetBasis, MappingAffine
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from flexspline.fea.edges import TET_EDGES, numbered_edges
 from flexspline.fea.solid.elements import determinants, tet_rule
-from flexspline.fea.solid.quadratic import CORNER_FACES
 from flexspline.fea.types import TetMesh
 
 
@@ -36,16 +30,7 @@ class SolidSpace:
 
     @classmethod
     def of(cls, mesh: TetMesh) -> SolidSpace:
-        corners = mesh.cells[:, :4]
-        n = int(corners.max()) + 1
-        edges, of_cells = numbered_edges(corners[:, TET_EDGES], n)
-        node = np.arange(n + len(edges))
-        node[n + of_cells] = mesh.cells[:, 4:]
-        facets = _facet_numbers(corners, mesh.facets[:, :3])
-        named = {p: facets[mesh.facet_patch == i] for i, p in enumerate(mesh.patches) if p}
-        curved = MeshTet2(np.ascontiguousarray(mesh.nodes[node].T), np.ascontiguousarray(corners.T), sort_t=False)
-        curved = curved.with_boundaries({p: mine for p, mine in named.items() if len(mine)})
-        return cls(curved, mesh.cells, node)
+        return cls(mesh.curved.mesh, mesh.cells, mesh.curved.node)
 
     def on(self, patch: str) -> np.ndarray:
         """Return the sorted nodes on a patch, its edges included; none where there is no such patch."""
@@ -80,14 +65,3 @@ class SolidSpace:
         basis.mapping = self.curved.mapping()
         basis.dx = basis.mapping.detDG(basis.X, find=basis.find) * basis.W
         return basis
-
-
-def _facet_numbers(tets: np.ndarray, facets: np.ndarray) -> np.ndarray:
-    """scikit-fem's number (k,) of each facet of corners (k, 3), in rising order of their corners."""
-    n = int(tets.max()) + 1
-
-    def numbers(corners: np.ndarray) -> np.ndarray:
-        first, second, third = np.sort(corners, axis=-1).astype(np.int64).T
-        return (first * n + second) * n + third
-
-    return np.searchsorted(np.unique(numbers(tets[:, CORNER_FACES])), numbers(facets))

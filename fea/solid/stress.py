@@ -41,7 +41,7 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
 
     def parts() -> Iterator[ElementValues]:
         for part in _parts(mesh.elements):
-            basis, cells = basis_of(mesh.space.curved, part, at_nodes), mesh.cells[part]
+            basis, cells = basis_of(mesh.curved.mesh, part, at_nodes), mesh.cells[part]
             local = _stress(basis, u[cells], material)
             yield cells, basis.dx.sum(axis=1), local.reshape(*cells.shape, 9)
 
@@ -79,7 +79,7 @@ def energy_error(mesh: TetMesh, u: np.ndarray, material: Elastic) -> EnergyError
     nodal = nodal_stress(mesh, u, material).reshape(-1, 9)
     energy, error = np.empty((2, mesh.elements))
     for part in _parts(mesh.elements):
-        basis, cells = basis_of(mesh.space.curved, part), mesh.cells[part]
+        basis, cells = basis_of(mesh.curved.mesh, part), mesh.cells[part]
         raw = _stress(basis, u[cells], material)
         smooth = np.matmul(reference_values(basis.X.T), nodal[cells]).reshape(raw.shape)
         energy[part] = np.einsum("mq,mq->m", _twice_energy(raw, material), basis.dx)

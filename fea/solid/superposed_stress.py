@@ -96,7 +96,7 @@ def _element_means(
 ) -> np.ndarray:
     """Return the stress (n, 3, 3) at every node, as the mean over some of its elements, a mask (m,)."""
     cells = mesh.cells[elements]
-    basis = basis_of(mesh.space.curved, np.flatnonzero(elements))
+    basis = basis_of(mesh.curved.mesh, np.flatnonzero(elements))
     at = np.matmul(reference_values(basis.X.T), mesh.nodes[cells])
     values = without_cuts.at(at.reshape(-1, 3))[1].reshape(*at.shape[:2], 9)
     volume = basis.dx.sum(axis=1)

@@ -17,6 +17,7 @@ from flexspline.fea.solid.elements import (
     tet_rule,
 )
 from flexspline.fea.solid.model import Model, Supports
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
@@ -38,7 +39,7 @@ def cartesian_model(mesh: TetMesh, material: Elastic) -> Model:
 
 def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
     """Nodal forces (n, 3) of a traction given at points (..., 3) as vectors (..., 3)."""
-    space = mesh.space
+    space = SolidSpace.of(mesh)
     basis = space.facet_basis(patch, degree=6)
     at = np.asarray(basis.global_coordinates())
     forces = traction(np.moveaxis(at, 0, -1))
@@ -51,7 +52,7 @@ def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
 
 def body_load(mesh: TetMesh, force: np.ndarray) -> np.ndarray:
     """Nodal forces (n, 3) of a constant force (3,) per volume."""
-    weights = basis_of(mesh.space.curved).dx
+    weights = basis_of(mesh.curved.mesh).dx
     shares = np.einsum("mq,qi->mi", weights, reference_values(tet_rule()[0]))
     load = np.zeros_like(mesh.nodes)
     np.add.at(load, mesh.cells, shares[..., None] * force)

@@ -92,7 +92,7 @@ def exact(body: Part) -> Stiffness:
 def energy_K(solved: Solved, material: Elastic, keep: Any) -> float:
     """K [N·m/rad] of the field where `keep` says so of points (m, q, 3), by quadrature, whole part."""
     mesh = solved.mesh
-    basis = basis_of(mesh.space.curved)
+    basis = basis_of(mesh.curved.mesh)
     grad = displacement_gradient(basis, solved.displacement[mesh.cells])
     strain = (grad + grad.swapaxes(2, 3)) / 2
     trace = np.trace(strain, axis1=2, axis2=3)

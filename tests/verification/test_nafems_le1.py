@@ -64,8 +64,9 @@ def test_le1_stress_at_d(record) -> None:
 
 def test_the_plate_is_the_benchmarks() -> None:
     """Area of the quarter between the ellipses, π(ab − cd)/4, times the thickness."""
+    from flexspline.fea.solid.space import SolidSpace
 
     mesh = quarter(4, THICKNESS, layers=1)
     exact = pi / 4 * (3250 * 2750 - 2000 * 1000) * THICKNESS
     # parabolic arcs of 90°/12: (π/24)⁴/10 = 3e-5
-    assert mesh.space.volumes.sum() == pytest.approx(exact, rel=3e-5)
+    assert SolidSpace.of(mesh).volumes.sum() == pytest.approx(exact, rel=3e-5)

@@ -14,6 +14,7 @@ from flexspline.fea.solid.elements import NODES, reference_values
 from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.solver import Case, solve
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.unfold import folded, unfolded
 from flexspline.fea.types import Elastic
 
@@ -38,8 +39,8 @@ def test_matrix_equals_scikit_fems_on_curved_elements() -> None:
 
     mesh = small()
     eye = np.zeros((len(mesh.nodes), 3, 3)) + np.eye(3)
-    ours = stiffness_matrix(mesh.space, STEEL, NodeFrames(eye, np.zeros(len(mesh.nodes))))
-    basis = Basis(mesh.space.curved, ElementVector(ElementTetP2()), intorder=4)
+    ours = stiffness_matrix(SolidSpace.of(mesh), STEEL, NodeFrames(eye, np.zeros(len(mesh.nodes))))
+    basis = Basis(mesh.curved.mesh, ElementVector(ElementTetP2()), intorder=4)
 
     @BilinearForm
     def elasticity(u, v, _):

@@ -30,6 +30,7 @@ from flexspline.fea.solid.plan import triangulated
 from flexspline.fea.solid.plan_curves import Arc, Line
 from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.solid.swept import swept_mesh
@@ -150,11 +151,11 @@ def test_volume_and_patches_are_the_cads(made: tuple[Part, TetMesh], cad: Tagged
     mesh = made[1]
     # a few edges of a hole's or a fillet's surface may be straight where a thin element asks for that:
     # an arc of 22° loses 2 % of the hole's area there
-    assert mesh.space.volumes.sum() == pytest.approx(cad.volume, rel=3e-4)
+    assert SolidSpace.of(mesh).volumes.sum() == pytest.approx(cad.volume, rel=3e-4)
     there = {mesh.patches[i] for i in np.unique(mesh.facet_patch)}
     assert set(cad.patch_areas) == there - {""}
     for patch, area in cad.patch_areas.items():
-        assert mesh.space.areas(patch).sum() == pytest.approx(area, rel=1e-3)
+        assert SolidSpace.of(mesh).areas(patch).sum() == pytest.approx(area, rel=1e-3)
 
 
 def test_what_the_mesh_is_checked_against_is_the_cads_volume(
@@ -327,7 +328,7 @@ def test_a_mesh_is_finer_where_its_error_is_and_nowhere_else() -> None:
     low = step + np.ptp(z, axis=1).max()
     kept, new = (int((b.min(axis=1) > low).sum()) for b in both)
     assert new == kept > 100
-    volumes = [m.space.volumes.sum() for m in (mesh, finer)]
+    volumes = [SolidSpace.of(m).volumes.sum() for m in (mesh, finer)]
     assert volumes[1] == pytest.approx(volumes[0], rel=3e-4)  # as against the CAD
     assert jacobian_ratio(finer.nodes, finer.cells).min() >= 0.3
     sides = np.sort(finer.facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)

@@ -20,6 +20,7 @@ from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import JACOBIAN_RATIO
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import into_sector_planes
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 from flexspline.fea.solid.torsion_field import FullTorsion
@@ -84,9 +85,9 @@ def test_a_cube_is_filled() -> None:
 def test_mesh_agrees_with_the_cad(shaft) -> None:
     surface, mesh = shaft
     # nodes lie on the exact surfaces; six-node facets approximate arcs to fourth order
-    assert mesh.space.volumes.sum() == pytest.approx(surface.volume, rel=1e-3)
+    assert SolidSpace.of(mesh).volumes.sum() == pytest.approx(surface.volume, rel=1e-3)
     for patch in ("mount", "grip"):
-        area = mesh.space.areas(patch).sum()
+        area = SolidSpace.of(mesh).areas(patch).sum()
         assert area == pytest.approx(surface.patch_areas[patch], rel=1e-3)
     assert jacobian_ratio(mesh.nodes, mesh.cells).min() >= JACOBIAN_RATIO
     assert np.array_equal(np.unique(mesh.cells), np.arange(len(mesh.nodes)))  # no orphans
@@ -105,9 +106,9 @@ def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
     whole = given.part("flexspline").meridian
     share = mesh.sector_deg / 360
     # a crack took 1.5 %
-    volume = mesh.space.volumes.sum()
+    volume = SolidSpace.of(mesh).volumes.sum()
     assert volume == pytest.approx(whole.volume * share, rel=1e-3)
-    assert mesh.space.areas("mesh").sum() == pytest.approx(
+    assert SolidSpace.of(mesh).areas("mesh").sum() == pytest.approx(
         whole.patch_area("mesh") * share, rel=5e-3
     )
 
@@ -130,7 +131,7 @@ def test_the_mounts_rim_is_in_the_mesh() -> None:
     radius = np.hypot(*mesh.nodes[mount[:, :3], :2].transpose(2, 0, 1))
     assert radius.max() == pytest.approx(given.flexspline.boss_diameter_mm / 2, abs=1e-6)
     # six-node facets along circles, their arcs below 10°
-    area = mesh.space.areas("mount").sum()
+    area = SolidSpace.of(mesh).areas("mount").sum()
     assert area == pytest.approx(surface.patch_areas["mount"], rel=1e-5)
 
 
@@ -164,7 +165,7 @@ def test_a_wrong_patch_is_refused(shaft) -> None:
     grip = mesh.patches.index("grip")
     fewer = mesh.facet_patch.copy()
     mine = np.flatnonzero(fewer == grip)
-    largest = np.argsort(-mesh.space.areas("grip"))
+    largest = np.argsort(-SolidSpace.of(mesh).areas("grip"))
     fewer[mine[largest[: len(mine) // 10 + 1]]] = 0  # at least a tenth of the area
     with pytest.raises(MeshQualityError, match="patch 'grip' badly"):
         check_against_cad(replace(mesh, facet_patch=fewer), surface)
@@ -208,7 +209,7 @@ def test_a_wide_keyway_keeps_its_planes() -> None:
     section, _ = quad(lambda y: sqrt(outer**2 - y**2) - slot.floor, 0, slot.half_width)
     half = part.meridian.volume / 2 - section * slot.length
     # parabolas for arcs of a coarse mesh leave 0.1 % at most
-    assert mesh.space.volumes.sum() == pytest.approx(half, rel=1e-3)
+    assert SolidSpace.of(mesh).volumes.sum() == pytest.approx(half, rel=1e-3)
 
 
 def test_lost_volume_is_refused(shaft) -> None:

@@ -26,6 +26,7 @@ from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.stiffness import MeshSequence, solid_stiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import swept_mesh
@@ -208,7 +209,7 @@ def test_volume_is_pappus_less_the_holes(made: tuple[Design, str, TetMesh]) -> N
     # parabolas for arcs of at most 15°: (15°)⁴/720 of a fillet's or hole's area, a part of the whole; where
     # a keyway bends the mesh, arcs have up to 21°, (21°)⁴/720, and middle nodes off their middles
     within = 2e-5 if slot is None else 4e-5
-    assert mesh.space.volumes.sum() == pytest.approx(volume, rel=within)
+    assert SolidSpace.of(mesh).volumes.sum() == pytest.approx(volume, rel=within)
     assert jacobian_ratio(mesh.nodes, mesh.cells).min() > 0.3
 
 
@@ -218,7 +219,7 @@ def test_patches_have_the_cad_areas(made: tuple[Design, str, TetMesh], cad: Tagg
     assert set(cad.patch_areas) == there - {""}
     for patch, area in cad.patch_areas.items():
         # chords of the parabolas above; symmetry planes hold the fillets
-        assert mesh.space.areas(patch).sum() == pytest.approx(area, rel=1e-4)
+        assert SolidSpace.of(mesh).areas(patch).sum() == pytest.approx(area, rel=1e-4)
 
 
 def test_symmetry_planes_are_planes(made: tuple[Design, str, TetMesh]) -> None:
@@ -303,7 +304,7 @@ def test_mesh_beyond_memory_is_refused_before_it_is_built() -> None:
 
 def test_every_tetrahedron_is_positive(made: tuple[Design, str, TetMesh]) -> None:
     """By construction, without turning round those that came out negative."""
-    assert (made[2].space.volumes > 0).all()
+    assert (SolidSpace.of(made[2]).volumes > 0).all()
 
 
 @pytest.mark.parametrize("name", WITHOUT_HOLES)

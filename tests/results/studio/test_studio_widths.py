@@ -23,7 +23,8 @@ FAULTS = """(places) => {
   const all = [...document.querySelectorAll(places)].filter(shown);
   const boxes = all.map((e) => e.getBoundingClientRect());
   const name = (e) => `${e.tagName} ${e.id || e.className} ${e.textContent.slice(0, 30)}`;
-  const cut = (e) => e.matches("button, td.value, td.what, th, #brief dd") && e.scrollWidth > e.clientWidth + 1;
+  const whole = "button, td.value, td.what, th, #brief dd";
+  const cut = (e) => e.matches(whole) && e.scrollWidth > e.clientWidth + 1;
   // the scale lies on the picture's own ground, where the part leaves room
   const apart = (e, f) => e.contains(f) || f.contains(e) || (e.id === "canvas" && f.closest("#scale"));
   const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5
