@@ -206,8 +206,10 @@ def _best(
         height = np.exp(-(((torques * PLACE_SHARE - places[:, None]) / width) ** 2))
         own = height**2 @ count
         new = own - ((height @ of_basis) ** 2).sum(axis=1)
-        told = ((height > ON_BUMP).sum(axis=1) >= FEWEST_TORQUES) & (new > LEAST_NEW_SHARE * own)
-        gain = np.where(told, (height @ of_left) ** 2 / np.where(told, new, 1.0), 0.0)
+        distinct = ((height > ON_BUMP).sum(axis=1) >= FEWEST_TORQUES) & (
+            new > LEAST_NEW_SHARE * own
+        )
+        gain = np.where(distinct, (height @ of_left) ** 2 / np.where(distinct, new, 1.0), 0.0)
         if gain.max() > best:
             best = float(gain.max())
             best_bump = float(places[gain.argmax()]), width, best
