@@ -177,6 +177,7 @@ def _tuned(x: np.ndarray, left: np.ndarray, basis: np.ndarray, bumps: Sequence[B
         return np.asarray(left - columns @ heights)
 
     inside = np.clip(start, np.array(low) + INSIDE, np.array(high) - INSIDE)
+    # x_scale: usual changes of place, logs of both widths, and power
     solution = least_squares(
         misfit, inside, bounds=(low, high), x_scale=[0.01, 0.1, 0.1, 0.2] * len(bumps),
         max_nfev=TUNING_ROUNDS,

@@ -1,4 +1,7 @@
-"""A record explained by causes, and the verdict on it; what the causes are worth elsewhere comes later."""
+"""A record explained by causes, and the verdict on it: `judge` has the steps in order.
+
+Errors on held-out data, which may overrule the verdict, come later (`diagnose.py`).
+"""
 
 from __future__ import annotations
 
