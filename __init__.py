@@ -61,15 +61,15 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import PackageNotFoundError, version
 
         try:
-            found: Any = version("flexspline")
+            value: Any = version("flexspline")
         except PackageNotFoundError:  # a source tree that nobody installed
-            found = "unknown"
+            value = "unknown"
     elif name in _PLACE:
-        found = getattr(import_module(f"flexspline.{_PLACE[name]}"), name)
+        value = getattr(import_module(f"flexspline.{_PLACE[name]}"), name)
     else:
         raise AttributeError(f"module 'flexspline' has no attribute {name!r}")
-    globals()[name] = found
-    return found
+    globals()[name] = value
+    return value
 
 
 def __dir__() -> list[str]:

@@ -6,6 +6,9 @@ from functools import cache
 
 import numpy as np
 
+CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
+"""(2, 6) places of the nodes in the reference triangle."""
+
 
 def shape_functions(at: np.ndarray) -> np.ndarray:
     """Return scikit-fem's P2 shape functions (6, q) at points (2, q) of the reference triangle.

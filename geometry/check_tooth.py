@@ -15,6 +15,9 @@ from flexspline.geometry.outline import SAME_mm
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 from flexspline.geometry.tooth import half_thickness, tip_radius
 
+INSIDE_END_SHARE = 1e-6
+"""Of a module, by which ends of ranges lie inside what is possible: less than the digits in which they are
+printed."""
 SMALLEST_LAND = 0.02
 """Half width of tip and root, in modules, below which a tooth counts as pointed."""
 
@@ -28,7 +31,7 @@ def ring_ends(design: Design) -> tuple[float, float]:
     pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
     if f.teeth == "none" or pitch - land <= f.wall_radius + SAME_mm:
         return 0.0, inf
-    margin = 1e-6 * gear.module_mm  # below the digits in which the ends are told
+    margin = INSIDE_END_SHARE * gear.module_mm
     low, high = f.wall_radius, pitch - land - margin
     if _gap(design, low) < land:
         low = last_that(lambda r: _gap(design, r) > land, high, low, margin)
@@ -40,7 +43,7 @@ def least_module_mm(design: Design) -> float:
     if design.flexspline.teeth == "none":
         return 0.0
     least = design.flexspline.wall_radius / (design.gear.teeth_flexspline / 2 - SMALLEST_LAND)
-    return least * (1 + 1e-6) + SAME_mm
+    return least * (1 + INSIDE_END_SHARE) + SAME_mm
 
 
 def tooth_faults(design: Design) -> Iterator[DesignError]:

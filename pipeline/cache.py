@@ -2,7 +2,8 @@
 
 fTetWild is not deterministic, so the cache is also what makes a part that it meshes give the same answer
 twice.
-An entry is one .npz (`pipeline.packing`). Damaged entries are dropped and made again.
+An entry is one .npz (`pipeline.packing`). Damaged entries are dropped and made again. Pickles are passed
+only between copies of one process, in a temporary folder of theirs (`fea/process_lock.py`).
 """
 
 from __future__ import annotations
@@ -63,6 +64,7 @@ def _is_first(why: str) -> bool:
 
 
 def _taken(path: Path) -> Any:
+    """What a copy of this process made, or _MISSING."""
     try:
         return pickle.loads(path.read_bytes())
     except Exception:  # not there, or not to be made again: then it is made here
@@ -70,6 +72,7 @@ def _taken(path: Path) -> Any:
 
 
 def _given(path: Path | None, value: Any) -> None:
+    """Leave a value to the copies of this process, where there are any."""
     if path is not None:
         with suppress(Exception):  # no room, or no pickle: the copy makes its own
             path.write_bytes(pickle.dumps(value))

@@ -28,7 +28,8 @@ from validation_page import TOPICS, Row, has_case, markdown
 
 from flexspline.geometry.kernel import CadKernelError
 
-PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "validation.md"
 WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
@@ -126,9 +127,16 @@ def pytest_collect_directory(path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The slowest files first, the others in the same order on every worker."""
+    """The slowest files first, the others in the same order on every worker.
+
+    pytest would import the checkout as a package, because the program's `__init__.py` is at its top. That
+    puts the folder around it first on `sys.path`: a package `numpy` there would then hide the library.
+    """
     place = {name: i for i, name in enumerate(SLOWEST)}
     items.sort(key=lambda item: (place.get(item.path.stem, len(place)), item.path.parts))
+    for node in items[0].listchain() if items else ():
+        if isinstance(node, pytest.Package) and node.path == ROOT:
+            node.setup = lambda: None  # type: ignore[method-assign]
 
 
 def pytest_collection_finish() -> None:

@@ -6,7 +6,7 @@ import ast
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -170,6 +170,45 @@ def test_a_wrong_model_is_met_where_commands_and_workers_end_alone() -> None:
 def test_the_check_sees_what_is_caught() -> None:
     text = "try:\n    f()\nexcept (A, B) as x:\n    pass\nexcept C:\n    raise\n"
     assert caught(text) == {"A", "B", "C"}
+
+
+CONSTANT_ELSEWHERE = re.compile(r"`(?:\w+\.)*(\w+)\.([A-Z][A-Z_]*[A-Za-z_0-9]*)`")
+"""In comments: the file and its constant, or its class."""
+LIBRARIES = {"optuna"}
+"""Of which comments name a class."""
+
+
+def lost_references(text: str, names: Mapping[str, set[str]]) -> Iterator[str]:
+    """Constants and classes that comments name with their file, which that file does not have."""
+    for m in CONSTANT_ELSEWHERE.finditer(text):
+        if m[1].islower() and m[1] not in LIBRARIES and m[2] not in names.get(m[1], ()):
+            yield f"{m[1]}.{m[2]}"
+
+
+@cache
+def names_by_file() -> dict[str, set[str]]:
+    """All names that a file of the program defines or imports, by the file's name."""
+    names: dict[str, set[str]] = {}
+    for path in FILES:
+        nodes = list(ast.walk(parsed(path.read_text(encoding="utf-8"))))
+        here = names.setdefault(path.stem, set())
+        here |= {n.id for n in nodes if isinstance(n, ast.Name)}
+        here |= {n.name for n in nodes if isinstance(n, ast.ClassDef | ast.alias)}
+    return names
+
+
+def test_constants_that_comments_name_are_where_they_say() -> None:
+    lost = {
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in FILES
+        for name in lost_references(path.read_text(encoding="utf-8"), names_by_file())
+    }
+    assert not lost
+
+
+def test_the_check_sees_a_constant_that_has_moved() -> None:
+    text = "as `lobes.LOBE_BULK`, `solid.lobes.MOST` and `gone.LEAST_K`; `key.torque_Nm`"
+    assert list(lost_references(text, {"lobes": {"LOBE_BULK"}})) == ["lobes.MOST", "gone.LEAST_K"]
 
 
 def programs(text: str) -> Iterator[ast.Module]:

@@ -26,6 +26,7 @@ from flexspline.fea.axisymmetric.factors import PatternSolver, relative_residual
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, at_points, curved
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
+from flexspline.fea.quadratic_triangle import CORNERS_AND_MIDDLES
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError
@@ -35,8 +36,6 @@ DEGREE = 4
 """Degree of the quadrature, of six points. r|∇N|² has degree 3 on straight triangles; the rest is for N²/r
 and curved edges. K of six cups under the lobe load is off by 2e-8 at most, with bores of 0 to 6 mm by 9e-9
 (degree 6: 5e-11 and 2e-9, in 1.2 times the time)."""
-CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
-"""Nodes of the reference triangle in P2 order (2, 6)."""
 INWARD = 1e-6
 """Fields at nodes are evaluated this far inside the triangle, where u/r is defined even on the axis."""
 PRESSURE = LinearForm(lambda v, w: v * w.x[0])

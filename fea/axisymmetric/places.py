@@ -12,12 +12,11 @@ from skfem.element import DiscreteField
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.axisymmetric.triangle_search import triangles_of
+from flexspline.fea.quadratic_triangle import CORNERS_AND_MIDDLES
 
 OUTSIDE = 0.01
 """Share of the mesh's size that a point may lie outside. A mesher's walls may begin 1e-6 mm outside, points
 of a parabola 1e-4 of its radius."""
-REFERENCE = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 0.5]])
-"""Coordinates of a triangle's six numbers: corners, middles of 01, 12, 02."""
 
 
 @dataclass(frozen=True)
@@ -82,5 +81,5 @@ def located(
         owner = np.zeros(len(numbers), int)
         owner[cells.ravel()] = np.arange(cells.size)
         of_cell, triangle[outside] = np.divmod(owner[nearest], cells.shape[1])
-        local[:, outside] = REFERENCE[:, of_cell]
+        local[:, outside] = CORNERS_AND_MIDDLES[:, of_cell]
     return triangle, local

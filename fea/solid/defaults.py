@@ -60,13 +60,11 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         segments = part.shape.segment
         wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
         outer = max(s.outer_diameter_mm for s in segments) / 2
-        on_axis = any(s.inner_diameter_mm == 0 for s in segments)
         far = min(max(FAR_WALLS_OF_SHAFT * wall, outer / FINEST_SHARE), part.length / 8, outer / 3)
         near, envelope = NEAR_SHARE * far, far / ENVELOPES_PER_FAR
     else:
         f = part.shape
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
-        on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
         far = min(max(FAR_WALLS * wall, outer / FINEST_SHARE), part.length / 6, outer / 3)
         near, envelope = (
             min(wall, far / LEAST_GRADING, outer / NEAR_OF_RADIUS),
@@ -76,6 +74,7 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         far = edge_length_mm
         refuse_beyond(outer * part.length / far**2, far)  # before CAD makes chords as fine
         near = min(near, far)
+    on_axis = any(s.on_axis for s in part.meridian.segments)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE, part.ligament_mm / ENVELOPES_PER_LIGAMENT)
     return MeshSpec(
         grading=Grading(near, far, growth=EDGE_GROWTH),

@@ -111,6 +111,7 @@ class PlanEdges:
             node = self.ends[:, side]
             mine = np.flatnonzero((node < len(sharp)) & sharp[np.minimum(node, len(sharp) - 1)])
             wanted = reach[node[mine]]
+            # an edge of less than 1.5 times that would leave a piece of less than half of it
             mine, wanted = mine[length[mine] > wanted * 1.5], wanted[length[mine] > wanted * 1.5]
             low, high = np.zeros(len(mine)), np.ones(len(mine))
             for _ in range(HALVINGS):

@@ -13,8 +13,8 @@ from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.drawn_flanks import DrawnFlanks
 from flexspline.fea.gear.kinematics import ToothMesh
 from flexspline.fea.gear.model import GearModel
+from flexspline.fea.gear.outer_race import condensed_race, race_outline
 from flexspline.fea.gear.plug import Plug
-from flexspline.fea.gear.race import condensed_race, race_outline
 from flexspline.fea.gear.rim import Rim, condensed_rim, places_along
 from flexspline.fea.gear.tooth_pair import flank_contact, tooth
 from flexspline.fea.threads import one_thread

@@ -13,7 +13,7 @@ import numpy as np
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST_INTERVAL, Indices, sampled_indices
-from flexspline.pipeline.study.surface import ResponseSurface, surface_through
+from flexspline.pipeline.study.response_surface import ResponseSurface, surface_through
 from flexspline.pipeline.study.tolerance import ScatteredInput
 
 TIGHTENING_FACTORS = (0.75, 0.5, 0.25, 0.0)

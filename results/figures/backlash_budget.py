@@ -11,7 +11,7 @@ from flexspline.pipeline.backlash import STD_KEY, TERMS, Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
 from flexspline.results.figures.chart import Chart
-from flexspline.results.figures.words import angle_title, fit, wrapped
+from flexspline.results.figures.fitted_text import angle_title, fit, wrapped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import (
     ACCENT,

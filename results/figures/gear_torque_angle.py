@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.gear.gear_curve import GearCurve
 from flexspline.results.figures.chart import Chart
-from flexspline.results.figures.words import angle_title, torque_title
+from flexspline.results.figures.fitted_text import angle_title, torque_title
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
 

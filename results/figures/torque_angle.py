@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad
 from flexspline.results.figures.chart import Chart
-from flexspline.results.figures.words import GROUND, angle_title, keep_inside, torque_title
+from flexspline.results.figures.fitted_text import GROUND, angle_title, keep_inside, torque_title
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 

@@ -25,3 +25,9 @@ def test_what_is_not_installed_is_the_checkouts_own() -> None:
     said = subprocess.run(words, env=env, capture_output=True, text=True, check=True, cwd="/")
     link = ROOT / ".ci" / "editable"
     assert said.stdout.split("\n")[:2] == [str(link / "flexspline" / "__init__.py"), str(link)]
+
+
+def test_the_folder_around_the_checkout_is_not_searched_for_modules() -> None:
+    """Else a folder there that is called as a library would be imported in its place."""
+    assert str(ROOT.parent) not in sys.path
+    assert ROOT.name == "flexspline" or ROOT.name not in sys.modules

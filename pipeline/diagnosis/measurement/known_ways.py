@@ -184,18 +184,19 @@ def _known(
     for degree in range(most + 1):
         if not seen[degree + 1 : degree + 1 + TESTED].any():
             count = 1 + (degree if degree <= 1 else min(degree + TESTED, most + tested))
-            told = np.linalg.solve(change[:count, :count].T, polynomials[:, :count].T).T
-            left = torque / noise - told @ along[:count]
-            if _bends(left, told, inner, end_sigmas):
+            orthonormal = np.linalg.solve(change[:count, :count].T, polynomials[:, :count].T).T
+            left = torque / noise - orthonormal @ along[:count]
+            if _bends(left, orthonormal, inner, end_sigmas):
                 return None
-            near = norm(told, axis=1) < 1  # a pause may lie between the last rows and the others
+            # a pause may lie between the last rows and the others
+            near = norm(orthonormal, axis=1) < 1
             if not near.any():
                 return None
-            return KnownWay(way[near], (noise * left)[near], noise[near, None] * told[near])
+            return KnownWay(way[near], (noise * left)[near], noise[near, None] * orthonormal[near])
     return None
 
 
-def _bends(left: np.ndarray, told: np.ndarray, inner: slice, end_sigmas: float) -> bool:
+def _bends(left: np.ndarray, orthonormal: np.ndarray, inner: slice, end_sigmas: float) -> bool:
     """Whether what polynomials (m, k) leave (m,), in rows' deviations, is not noise, within or at an end."""
     mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
     if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
@@ -203,6 +204,7 @@ def _bends(left: np.ndarray, told: np.ndarray, inner: slice, end_sigmas: float) 
     counts = [k for k in END_ROWS if 3 * k <= len(left)]
     ends = [slice(k) for k in counts] + [slice(-k, None) for k in counts]
     off = [
-        left[e].mean() / np.hypot(len(left[e]) ** -0.5, norm(told[e].mean(axis=0))) for e in ends
+        left[e].mean() / np.hypot(len(left[e]) ** -0.5, norm(orthonormal[e].mean(axis=0)))
+        for e in ends
     ]
     return bool(np.abs(off).max(initial=0.0) > end_sigmas)

@@ -154,6 +154,7 @@ def estimated(
             best = misfit, Noise(float(amount[0]), float(amount[1]), rho)
     assert best is not None
     noise = best[1]
+    # a millionth of the variance keeps the equations of purely coloured noise regular
     floor = max(1e-6 * float(np.var(residual)), FINEST_ARCSEC**2)
     return Noise(noise.white + floor, noise.coloured, noise.memory)
 

@@ -78,8 +78,8 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     travel = beyond(moved(width))
     # a hold may be logged far slower than a ramp, and have most of the rows
     usual = min(by_travel(span, travel, 0.5) or np.inf, float(np.median(span)))
-    told = span > SHORT_SPAN * usual
-    return Rates(width, (torque[width:] - torque[:-width]) / span, travel * told)
+    long_enough = span > SHORT_SPAN * usual
+    return Rates(width, (torque[width:] - torque[:-width]) / span, travel * long_enough)
 
 
 def moving_rates(history: History, rows: np.ndarray) -> Rates | None:

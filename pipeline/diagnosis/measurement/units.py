@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
+from flexspline.geometry.other_unit import KGF_N, LBF_N, INCH_mm
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 
 Factors = Mapping[str, float]
@@ -14,12 +15,8 @@ Factors = Mapping[str, float]
 
 ARCSEC_PER_TURN = 1_296_000.0
 """360 deg of 60 arcmin of 60 arcsec."""
-KGF_N = 9.80665
-"""Standard gravity on 1 kg: NIST SP 811 (2008), appendix B.8."""
-LBF_N = 0.45359237 * KGF_N
-"""The international pound, the same place."""
-INCH_M, FOOT_M = 0.0254, 0.3048
-"""Exact, the same place."""
+INCH_M, FOOT_M = INCH_mm / 1e3, 0.3048
+"""Exact: NIST SP 811 (2008), appendix B.8."""
 
 TORQUE: Factors = {
     "Nm": 1.0, "Nmm": 1e-3, "mNm": 1e-3, "Ncm": 1e-2, "kNm": 1e3, "uNm": 1e-6, "daNm": 10.0,

@@ -48,9 +48,9 @@ def model_text(
     lines += doubt_lines(doubt) if doubt is not None else []
     for unit, zero in model.zeros_arcsec.items():
         lines += _unit(unit, zero, provenance, model.own.get(unit))
-    told = {c.id: c for c in causes}
+    by_id = {c.id: c for c in causes}
     for cause_id, elements in model.elements.items():
-        lines += _cause(cause_id, elements, told.get(cause_id))
+        lines += _cause(cause_id, elements, by_id.get(cause_id))
     return "\n".join(lines).rstrip() + "\n"
 
 

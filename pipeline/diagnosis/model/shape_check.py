@@ -23,7 +23,8 @@ def example_history(
 ) -> History:
     """A record with every channel: triangles, `held` rows of hold at either end, warming, at many positions.
 
-    A little noise on the torque, always the same: shapes may be given its size.
+    A little noise on the torque, always the same: shapes may be given its size. All numbers are made up: only
+    the names of a shape's parameters, and values that no record changes, are read from it.
     """
     quarter = np.arange(1, 11) / 10
     one = np.concatenate(

@@ -1,4 +1,6 @@
-"""Torque sweeps: regressors, their evidence, the race, and what follows from it. Start in `diagnose.py`.
+"""Torque sweeps: regressors, their evidence, the race, and what follows from it.
+
+Start in `diagnose.py`; the steps to the verdict are in `verdict.py`.
 
 Each folder imports from those above it, and all from the files beside this one.
 
@@ -8,7 +10,7 @@ Each folder imports from those above it, and all from the files beside this one.
 | `evidence/` | rows, design matrix, fit, evidence of a set, search for the best set |
 | `crossing/` | where the gap is crossed |
 | `identification/` | from the best set to causes: significance, rivals, imitations |
-| `race/` | the race of the causes |
+| `race/` | comparison of sets of causes by their evidence |
 | `magnitudes/` | sizes with their standard deviations |
 | `residual/` | tests of what the best set leaves |
 | `rig_faults/` | late readings, backward loops, slipping clamps |

@@ -148,8 +148,8 @@ class _Binned:
         fair &= half <= (STRAIGHT_AT_HALF if self.odd else MOST_AT_HALF)
         own = column**2 @ self.count
         new = own - ((column @ self.basis) ** 2).sum(axis=1)
-        told = fair & (new > LEAST_NEW * own)
-        return np.where(told, (column @ self.rest) ** 2 / np.where(told, new, 1.0), 0.0)
+        distinct = fair & (new > LEAST_NEW * own)
+        return np.where(distinct, (column @ self.rest) ** 2 / np.where(distinct, new, 1.0), 0.0)
 
 
 def _height(law: Law, x: np.ndarray, place: np.ndarray, shape: np.ndarray) -> np.ndarray:

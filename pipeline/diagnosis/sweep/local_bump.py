@@ -177,6 +177,7 @@ def _tuned(x: np.ndarray, left: np.ndarray, basis: np.ndarray, bumps: Sequence[B
         return np.asarray(left - columns @ heights)
 
     inside = np.clip(start, np.array(low) + INSIDE, np.array(high) - INSIDE)
+    # x_scale: usual changes of place, logs of both widths, and power
     solution = least_squares(
         misfit, inside, bounds=(low, high), x_scale=[0.01, 0.1, 0.1, 0.2] * len(bumps),
         max_nfev=TUNING_ROUNDS,
@@ -206,8 +207,10 @@ def _best(
         height = np.exp(-(((torques * PLACE_SHARE - places[:, None]) / width) ** 2))
         own = height**2 @ count
         new = own - ((height @ of_basis) ** 2).sum(axis=1)
-        told = ((height > ON_BUMP).sum(axis=1) >= FEWEST_TORQUES) & (new > LEAST_NEW_SHARE * own)
-        gain = np.where(told, (height @ of_left) ** 2 / np.where(told, new, 1.0), 0.0)
+        distinct = ((height > ON_BUMP).sum(axis=1) >= FEWEST_TORQUES) & (
+            new > LEAST_NEW_SHARE * own
+        )
+        gain = np.where(distinct, (height @ of_left) ** 2 / np.where(distinct, new, 1.0), 0.0)
         if gain.max() > best:
             best = float(gain.max())
             best_bump = float(places[gain.argmax()]), width, best

@@ -58,8 +58,8 @@ def curve_steps(
     steps: list[CurveStep] = []
     for _ in range(MOST_STEPS):
         own = (columns**2).sum(axis=0)
-        told = own > LEAST_ROWS
-        gain = np.where(told, (left @ columns) ** 2 / np.where(told, own, 1.0), 0.0)
+        distinct = own > LEAST_ROWS
+        gain = np.where(distinct, (left @ columns) ** 2 / np.where(distinct, own, 1.0), 0.0)
         best = int(gain.argmax())
         if not gain[best] > 0:
             break

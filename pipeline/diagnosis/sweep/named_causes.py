@@ -56,12 +56,12 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     rounding = RoundingError.of(explained.prepared, identified.fit)
     slopes = identified.fit.magnitude_slopes()
     timed = explained.prepared.sweep.history.time_s is not None
-    told = loop_tells(evidence, identified.best, timed)
+    decided = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
     units = explained.prepared.sweep.units
     named = []
     for c in identified.named:
-        unweighed = tuple(_other_rivals(explained, c, told, timed))
+        unweighed = tuple(_other_rivals(explained, c, decided, timed))
         shares = explained.shares.get(c)
         rivals = (*identified.rivals[c], *unweighed)
         chance = probability(c, sets)
@@ -110,10 +110,12 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     return tuple(named)
 
 
-def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool) -> Iterator[str]:
-    """Rivals that no race of explanations shows; `told`, `timed`: as `loop_tells` has them."""
+def _other_rivals(
+    explained: ExplainedSweep, cause: str, decided: bool, timed: bool
+) -> Iterator[str]:
+    """Rivals that no race of explanations shows; `decided`, `timed`: as `loop_tells` has them."""
     identified = explained.identified
-    if cause in LOOPS and not told and not (cause == FRICTION and timed and explained.ahead):
+    if cause in LOOPS and not decided and not (cause == FRICTION and timed and explained.ahead):
         yield LOOPS[cause]
     if cause == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
         if at_one_rate_on_ramps(explained.prepared.rig.history):

@@ -56,9 +56,9 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     names = whole.sweep.units
     if whole.misread is not None or not 2 <= len(names) <= MOST_UNITS:
         return None
-    told = whole.decision.verdict != "unknown"
-    differ = _differing(whole.explained) if told else set()
-    if told and not differ:
+    known = whole.decision.verdict != "unknown"
+    differ = _differing(whole.explained) if known else set()
+    if known and not differ:
         return None
     decisions: dict[str, Decision | None] = {}
     largest, unit, shown = (False, 0.0), "", whole
@@ -83,7 +83,7 @@ def units_apart(whole: JudgedSweep) -> UnitsApart | None:
     series = [c for c in causes if c.id == SERIES]
     if len(judged) < 2 or not causes or len(series) > 1 or any(c.own_units for c in series):
         return None
-    if told and not whole.decision.unexplained:
+    if known and not whole.decision.unexplained:
         together = {c.id for c in whole.decision.causes}
         each_shows = all({c.id for c in own.causes} == together for own in judged.values())
         if each_shows and len(causes) == len(together):

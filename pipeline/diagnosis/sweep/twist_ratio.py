@@ -25,8 +25,8 @@ LARGEST_CORRELATION = 0.99
 """Of neighbouring residuals: a slow effect counts as no more than 200 rows of one reading each."""
 SPIKE_PERCENT = 1.0
 """Percent of the rows at either end that may be spikes: ten times as many as a good rig's file has
-(`offset_race.SPIKE_NATS`), by judgement. Of readings in even steps it hides 2 % of the span, held to a factor
-of 30."""
+(`torque_offset_race.SPIKE_NATS`), by judgement. Of readings in even steps it hides 2 % of the span, held to
+a factor of 30."""
 
 
 @dataclass(frozen=True)

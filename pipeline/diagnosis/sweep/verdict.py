@@ -1,4 +1,7 @@
-"""A record explained by causes, and the verdict on it; what the causes are worth elsewhere comes later."""
+"""A record explained by causes, and the verdict on it: `judge` has the steps in order.
+
+Errors on held-out data, which may overrule the verdict, come later (`diagnose.py`).
+"""
 
 from __future__ import annotations
 
@@ -104,19 +107,24 @@ def _on_causes(
 ) -> Decision:
     """The verdict on the causes named, by what they and what is left explain."""
     identified = explained.identified
-    told = {name for c in causes for name in (c.id, *c.alternatives)}
+    attributed = {name for c in causes for name in (c.id, *c.alternatives)}
     if not causes:  # beside one, which may be a part of the saw-tooth, it stays unexplained
-        told |= made_by_rounding(identified, left.rounding_arcsec)  # residual/unexplained.py
+        attributed |= made_by_rounding(identified, left.rounding_arcsec)  # residual/unexplained.py
     named_rms = hypot(*(c.rms_arcsec for c in causes))
     lost = lost_bend(identified.fit)  # identification/gear_curve_error.py
-    nuisance = unnamed_share(identified, told)  # residual/nuisance_share.py
+    nuisance = unnamed_share(identified, attributed)  # residual/nuisance_share.py
     unnamed_rms = hypot(
-        identified.unnamed_rms(told),
-        *(s.rms_arcsec for s in (left.jumps, left.again) if s is not None),
+        identified.unnamed_rms(attributed),
+        *(s.rms_arcsec for s in (left.jumps, left.lack_of_fit) if s is not None),
         lost.rms if lost else 0.0,
     )
     unexplained = unexplained_of(  # residual/unexplained.py
-        identified, left.tests, left.jumps, left.again, told, explained.prepared.sweep.units
+        identified,
+        left.tests,
+        left.jumps,
+        left.lack_of_fit,
+        attributed,
+        explained.prepared.sweep.units,
     )
     return decided(  # ../decision.py
         tuple(causes),

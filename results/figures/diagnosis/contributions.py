@@ -13,7 +13,12 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
-from flexspline.results.figures.words import angle_title, keep_inside, thin_labels, torque_title
+from flexspline.results.figures.fitted_text import (
+    angle_title,
+    keep_inside,
+    thin_labels,
+    torque_title,
+)
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ from flexspline.results.figures.diagnosis.specimens import (
     write_held_out_specimens,
     write_stiffness,
 )
-from flexspline.results.figures.diagnosis.units import shared_causes, write_units
+from flexspline.results.figures.diagnosis.unit_shares import shared_causes, write_units
 from flexspline.results.numbers import figures_text
 
 

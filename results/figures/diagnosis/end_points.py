@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.end_points.envelope import COVERED_WORDS
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.figures.words import angle_title, fit, keep_inside
+from flexspline.results.figures.fitted_text import angle_title, fit, keep_inside
 from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 

@@ -13,7 +13,7 @@ from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import noise_words
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
-from flexspline.results.figures.words import wrapped
+from flexspline.results.figures.fitted_text import wrapped
 from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 

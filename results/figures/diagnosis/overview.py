@@ -12,7 +12,7 @@ import numpy as np
 from flexspline.results.diagnosis.data_used import kinds_left_out
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
-from flexspline.results.figures.words import angle_title, keep_inside, torque_title
+from flexspline.results.figures.fitted_text import angle_title, keep_inside, torque_title
 from flexspline.results.numbers import grouped
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexspline.results.figures.diagnosis.seen import PlotChannel, SweepPictureData, thinned
-from flexspline.results.figures.words import angle_title, thin_labels
+from flexspline.results.figures.fitted_text import angle_title, thin_labels
 from flexspline.results.style import GRID, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:

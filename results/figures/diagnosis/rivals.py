@@ -14,7 +14,7 @@ from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import title_of
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.figures.words import fit, wrapped
+from flexspline.results.figures.fitted_text import fit, wrapped
 from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, LIGHT, PALETTE, new_figure, save_png, styled
 

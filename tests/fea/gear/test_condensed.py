@@ -16,7 +16,7 @@ from flexspline.fea.axisymmetric.seat import seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.gear.condensed import along, condensed, even
-from flexspline.fea.gear.race import condensed_race, race_outline
+from flexspline.fea.gear.outer_race import condensed_race, race_outline
 from flexspline.fea.gear.rim import condensed_rim, fine_enough, places_along, triangulated
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.load import load_design

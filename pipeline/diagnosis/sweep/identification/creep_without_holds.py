@@ -10,6 +10,7 @@ from itertools import product
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.creep import PER_DECADE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
@@ -29,8 +30,6 @@ EXPONENTS = (0.0, 0.3)
 """Of the weight of a retardation time: logarithm, and near Andrade's t^⅓."""
 LONGEST = 10.0
 """Longest retardation time, over the record's duration: it goes on to creep."""
-PER_DECADE = 3
-"""Retardation times in a decade: the sum then follows log t to 1 %."""
 
 
 def creep_explains(identified: Identification) -> bool:

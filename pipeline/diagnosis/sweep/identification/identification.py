@@ -66,13 +66,13 @@ class Identification:
     rival_sets: dict[str, Candidate]
     evidence_nats: dict[str, float]
 
-    def unnamed(self, told: Collection[str]) -> tuple[str, ...]:
-        """Owners in the best set that are none of the causes `told`, as found or as rivals."""
-        return tuple(sorted(o for o in self.rms if o not in {*self.named, *told}))
+    def unnamed(self, attributed: Collection[str]) -> tuple[str, ...]:
+        """Owners in the best set that are none of the `attributed` causes, found or rivals."""
+        return tuple(sorted(o for o in self.rms if o not in {*self.named, *attributed}))
 
-    def unnamed_rms(self, told: Collection[str]) -> float:
+    def unnamed_rms(self, attributed: Collection[str]) -> float:
         """Of what they add together [arcsec]: what one takes and another brings back is not there."""
-        return rms_together(self.fit, self.unnamed(told))
+        return rms_together(self.fit, self.unnamed(attributed))
 
 
 def identify(search: Search, beside: bool = False) -> Identification:

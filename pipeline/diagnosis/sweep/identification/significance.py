@@ -60,5 +60,5 @@ def _cancelled(fit: SweepFit, cause: str, magnitude: float) -> float:
     """How much larger a cause's elements are one by one than together; 0 where they do not add up."""
     rig, known = fit.measured_rig(), known_causes()[cause]
     each = [known.magnitude((e,), rig) for e in fit.elements().get(cause, ())]
-    adds_up = abs(sum(each) - magnitude) <= 1e-6 * sum(map(abs, each))
+    adds_up = abs(sum(each) - magnitude) <= 1e-6 * sum(map(abs, each))  # but for rounding
     return sum(map(abs, each)) - abs(magnitude) if len(each) > 1 and adds_up else 0.0

@@ -74,7 +74,7 @@ def _undithered_step(prepared: PreparedSweep, fit: SweepFit) -> tuple[float, flo
 
 def _sawtooth(steps: np.ndarray, kept_share: float) -> np.ndarray:
     """Mean of the rounded less the true reading, both in steps, under noise that keeps a share of its rms."""
-    if kept_share > 1 - 1e-6:
+    if kept_share > 1 - 1e-6:  # without noise the series below would not fall off
         return np.asarray(np.round(steps) - steps)
     off = np.zeros(steps.shape)
     for k in range(1, HARMONICS + 1):

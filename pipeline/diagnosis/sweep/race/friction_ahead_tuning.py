@@ -32,7 +32,7 @@ AHEAD_STEPS = 8
 LONGEST_LOG_STEPS = (0.25, 1.2)
 """Of a step, in the logarithms of friction torque and stiffness ratio: a quarter of the one, a factor of
 three of the other, which changes the loop less. Half or twice as long, no verdict of the 8 records of
-`ahead_race.AHEAD_RACES` changes."""
+`friction_ahead_race.AHEAD_RACES` changes."""
 LOG_DIFFERENCES = (0.01, 0.1)
 """Steps of the two logarithms, for slopes. Judgement: the loop changes less with the second."""
 STIFFNESS_RATIO, RATIO_STD = 30.0, 1.5

@@ -18,14 +18,14 @@ LEAST_CHI_SQUARE = 1e-9
 """[χ²] Causes that explain less explain nothing: rounding."""
 
 
-def unnamed_share(identified: Identification, told: Collection[str]) -> float:
-    """Rms that terms of owners beside those `told` explain after the causes, of what these explain first.
+def unnamed_share(identified: Identification, attributed: Collection[str]) -> float:
+    """Rms that terms of owners beside the `attributed` explain after the causes, of what these explain first.
 
     0 where the best set has no such terms. 0 too with friction ahead of the teeth, whose torque is not the
     one read: without it there is no fit to compare with.
     """
     evidence, best = identified.search.evidence, identified.best.terms
-    causes = [i for i in best if evidence.terms[i].owner in {*identified.named, *told}]
+    causes = [i for i in best if evidence.terms[i].owner in {*identified.named, *attributed}]
     if not causes or len(causes) == len(best) or evidence.columns.ahead is not None:
         return 0.0
     none, named, whole = (

@@ -33,13 +33,15 @@ class ResidualStructure:
 
     Attributes
     ----------
-    tests : of every channel. jumps : with the torque's motion. again : the misfit that comes back in every
-        cycle. rounding_arcsec : what rounding leaves.
+    tests : of every channel.
+    jumps : with the torque's motion.
+    lack_of_fit : the misfit that comes back in every cycle.
+    rounding_arcsec : what rounding leaves.
     """
 
     tests: tuple[ChannelTest, ...]
     jumps: Jumps | None
-    again: ChannelTest | None
+    lack_of_fit: ChannelTest | None
     rounding_arcsec: float
 
 
@@ -58,7 +60,7 @@ def residual_structure(explained: ExplainedSweep) -> ResidualStructure:
     # the encoder's step is known to each of these tests
     if jumps is not None and jumps.rms_arcsec < rounding_of_torque(prepared, fit).left_arcsec:
         jumps = None
-    again = repeated_misfit(prepared, fit)
-    if again is not None and again.rms_arcsec < of_curve:
-        again = None
-    return ResidualStructure(tuple(tests), jumps, again, rounding)
+    lack_of_fit = repeated_misfit(prepared, fit)
+    if lack_of_fit is not None and lack_of_fit.rms_arcsec < of_curve:
+        lack_of_fit = None
+    return ResidualStructure(tuple(tests), jumps, lack_of_fit, rounding)

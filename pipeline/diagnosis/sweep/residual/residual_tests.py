@@ -114,6 +114,7 @@ def _wave(prepared: PreparedSweep, left: np.ndarray) -> ChannelTest:
     count = max(8, len(left) // 2)
     power = _periodogram(t, (left - left.mean()) / left.std(), np.pi / length, 2 * count)
     top = float(power.max())
+    # exp(−700) = 1e-304 is near the least that a double holds
     p_value = p_value_of_best(float(np.exp(-min(top, 700.0))), count, independent=True)
     share = 2 * top / len(left)
     return ChannelTest(

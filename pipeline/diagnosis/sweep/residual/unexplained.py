@@ -39,17 +39,17 @@ def unexplained_of(
     identified: Identification,
     tests: Sequence[ChannelTest],
     jumps: Jumps | None = None,
-    again: ChannelTest | None = None,
-    told: Collection[str] = (),
+    lack_of_fit: ChannelTest | None = None,
+    attributed: Collection[str] = (),
     units: Sequence[str] = (),
 ) -> tuple[Unexplained, ...]:
     """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
 
-    `told` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
+    `attributed` : causes that are said to be possible, as found or as rivals. `units` : names of the units.
     """
     unexplained = []
     forms = _forms(identified)
-    for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
+    for owner in sorted(identified.unnamed(attributed), key=lambda o: -identified.rms[o]):
         rms = identified.rms[owner]
         if owner.startswith("?"):
             named = tuple(dict.fromkeys(_as_said(f, units) for o, f in forms if o == owner))
@@ -58,8 +58,12 @@ def unexplained_of(
             unexplained.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
     if jumps is not None:
         unexplained.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPS))
-    if again is not None:
-        unexplained.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
+    if lack_of_fit is not None:
+        unexplained.append(
+            Unexplained(
+                lack_of_fit.channel, lack_of_fit.rms_arcsec, lack_of_fit.p_value, COMES_BACK
+            )
+        )
     said = {u.channel for u in unexplained}
     for t in sorted(tests, key=lambda t: t.p_value):
         if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:

@@ -88,8 +88,8 @@ class CrossedRecord:
         functions = looped_functions if self.loops else unlooped_functions
         columns = np.column_stack([functions(self.history), *self.added])[self.rows]
         apart, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-        told = sizes > SINGULAR_SHARE**0.5 * sizes.max(initial=0.0)
-        return np.asarray(apart[:, told] * np.sqrt(len(columns)))
+        resolved = sizes > SINGULAR_SHARE**0.5 * sizes.max(initial=0.0)
+        return np.asarray(apart[:, resolved] * np.sqrt(len(columns)))
 
     @cached_property
     def width_Nm(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.results.figures.diagnosis.units import shared_causes
+from flexspline.results.figures.diagnosis.unit_shares import shared_causes
 
 FRICTION, RATE = "friction_hysteresis", "rate_dependence"
 

@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.words import cause_title
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
-from flexspline.results.figures.words import GROUND, thin_labels
+from flexspline.results.figures.fitted_text import GROUND, thin_labels
 from flexspline.results.sentences import capital
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
