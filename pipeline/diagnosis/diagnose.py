@@ -39,7 +39,8 @@ from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.scale_error import with_scale_error
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
 from flexspline.pipeline.diagnosis.timeless import in_rows
 from flexspline.pipeline.stiffness_pair import StiffnessPair

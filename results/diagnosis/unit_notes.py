@@ -6,7 +6,7 @@ from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart
 from flexspline.results.diagnosis.structure_words import structure_words

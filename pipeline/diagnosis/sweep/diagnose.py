@@ -1,69 +1,88 @@
-"""A torque sweep, from its rows to a verdict and what follows: `diagnose_sweep` has the steps in order.
+"""A torque sweep, from its rows to a verdict and what follows: the steps in order.
 
-Beside a step stands its file, which imports whatever else the step needs. The first, `judge`, has steps of
-its own, from a record's rows to its verdict: units that differ take them again, each by its own rows. Before
-all, `../with_stiffness.py` reads the file and `../diagnose.py` refuses an absurd size. The reasons of the
-steps: docs/diagnosis.md.
+`judge` takes a record's rows to a verdict. `diagnose_sweep` begins with it, lets it judge units that differ
+each by its own rows, and tests the causes on held-out data. Beside a step stands its file, which imports
+whatever else the step needs. Before all, `../with_stiffness.py` reads the file and `../diagnose.py` refuses
+an absurd size. The reasons of the steps: docs/diagnosis.md.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
-from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.decision import Decision, overruled
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.model.doubt import PredictionUncertainty
-from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
     Doing,
-    NamedCause,
     NextMeasurement,
     Unexplained,
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.shortage import Shortage
+from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
+from flexspline.pipeline.diagnosis.structure import FarSlope
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.evidence.prepare import TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted, unpredicted
-from flexspline.pipeline.diagnosis.sweep.magnitudes.calibration_std import calibration_of
+from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
-from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest
-from flexspline.pipeline.diagnosis.sweep.separate_units import UnitsApart, units_apart
-from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, judge
+from flexspline.pipeline.diagnosis.sweep.physical_limits import broken_limit, drowned, slow_noise
+from flexspline.pipeline.diagnosis.sweep.race.friction_ahead_race import with_friction_ahead
+from flexspline.pipeline.diagnosis.sweep.race.race import run_race
+from flexspline.pipeline.diagnosis.sweep.race.torque_offset_race import with_torque_offset
+from flexspline.pipeline.diagnosis.sweep.residual.residual_structure import residual_structure
+from flexspline.pipeline.diagnosis.sweep.separate_units import units_apart
+from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
+from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, misreading, verdict_on
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 
-@dataclass(frozen=True)
-class SweepAnalysis:
-    """What stands behind the verdict on a sweep, with all that a figure or a report needs.
-
-    `model` is the calibrated simulation with the `causes` found, `doubt` what its predictions may be off by;
-    `tests` are of what it leaves. All of it is of one unit, `apart.unit`, where units are judged `apart`.
-    """
-
-    explained: ExplainedSweep
-    model: ExtendedModel
-    doubt: PredictionUncertainty
-    tests: tuple[ChannelTest, ...]
-    causes: tuple[NamedCause, ...]
-    apart: UnitsApart | None = None
-
-    @cached_property
-    def calibration(self) -> Calibration:
-        """Gap and compliance as the record has them, of what its units have in common."""
-        return calibration_of(self.explained)  # magnitudes/calibration_std.py
+def judge(sweep: Sweep, prediction: Prediction) -> JudgedSweep | Shortage:
+    """The verdict on a record; why there is none where rows are too few or drowned in noise."""
+    shortage = too_few_torques(sweep)  # too_few_torques.py
+    if shortage is not None:
+        return shortage
+    short = thinned(sweep)  # ../measurement/thinning.py
+    try:
+        prepared = prepare(short, prediction)  # evidence/prepare.py
+    except TooFewRowsError as error:
+        return FewRows(error.count, error.wanted)
+    explained = with_friction_ahead(prepared)  # race/friction_ahead_race.py
+    if explained is None:
+        plain = run_race(prepared)  # race/race.py
+        explained = with_torque_offset(plain)  # race/torque_offset_race.py
+    hidden = drowned(explained)  # physical_limits.py
+    if hidden is not None:
+        return hidden
+    causes = named_causes(explained)  # named_causes.py
+    left = residual_structure(explained)  # residual/residual_structure.py
+    decision = verdict_on(explained, causes, left)  # verdict.py
+    broken = broken_limit(sweep, explained, decision.causes)  # physical_limits.py
+    if broken is not None:
+        decision = overruled(broken, beside=decision.unexplained)  # ../decision.py
+    if decision.verdict == "consistent":
+        slow = slow_noise(explained)  # physical_limits.py
+        if slow is not None:
+            decision = overruled(slow)  # ../decision.py
+    # a wrong unit or column bends all
+    bent = broken is not None and isinstance(broken.structure, FarSlope)
+    misread = None
+    if not bent:
+        misread = misreading(prepared, explained, decision)  # verdict.py
+    if misread is not None:
+        late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
+        # whatever else was found is what the race made of it
+        decision = overruled(late)  # ../decision.py
+    return JudgedSweep(sweep, explained, left, decision, misread)
 
 
 def diagnose_sweep(
     sweep: Sweep, prediction: Prediction
 ) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
     """The verdict on a sweep and what stands behind it; None where there are too few data."""
-    whole = judge(sweep, prediction)  # verdict.py
+    whole = judge(sweep, prediction)
     if not isinstance(whole, JudgedSweep):
         return _insufficient(whole), None
-    apart = units_apart(whole)  # separate_units.py
+    apart = units_apart(whole, judge)  # separate_units.py
     shown = apart.shown if apart else whole
     explained, own = shown.explained, shown.decision
     ids = [c.id for c in own.causes]

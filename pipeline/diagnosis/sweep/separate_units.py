@@ -6,7 +6,7 @@ and of none, and its misfit in each unit has no cause.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 
@@ -18,9 +18,11 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, NamedCause, none_of
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep, crossing_of
 from flexspline.pipeline.diagnosis.sweep.race.torque_offset_race import is_shifted
-from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, judge
+from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep
 
 USUAL_SCATTER = 0.4
 """Of the median size: by so much units of one batch may differ, friction foremost, and are told together."""
@@ -46,12 +48,15 @@ class UnitsApart:
     decision: Decision
 
 
-def units_apart(whole: JudgedSweep) -> UnitsApart | None:
+def units_apart(
+    whole: JudgedSweep, judge: Callable[[Sweep, Prediction], JudgedSweep | Shortage]
+) -> UnitsApart | None:
     """The units' own verdicts, where units differ and each by itself is explained.
 
-    A unit whose reading comes late is the answer, and no other is asked.
-    None where one of them is not; where all rows together show the same as each unit, in about the same size;
-    and where one is stiffer than the others: that may as well be the gain of its own reading.
+    `judge` is asked about the rows of one unit. A unit whose reading comes late is the answer, and no other
+    is asked. None where one of them is not explained; where all rows together show the same as each unit, in
+    about the same size; and where one is stiffer than the others: that may as well be the gain of its own
+    reading.
     """
     names = whole.sweep.units
     if whole.misread is not None or not 2 <= len(names) <= MOST_UNITS:

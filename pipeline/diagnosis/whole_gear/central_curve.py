@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.evidence.prepare import true_history
 
 OF_THE_CURVE = (CLEARANCE, SERIES, HARDENING)

@@ -31,7 +31,7 @@ from flexspline.pipeline.diagnosis.bend import NUMERICAL_SHARE
 from flexspline.pipeline.diagnosis.decision import MISFIT_P_VALUE, RIVAL_CHI_SQUARE
 from flexspline.pipeline.diagnosis.rated_limit import within_rated
 from flexspline.pipeline.diagnosis.robust import rms
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
 from flexspline.pipeline.diagnosis.whole_gear.fitted_input import (
     FittedInput,

@@ -10,8 +10,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.calibrated_residual import calibrated_residual, less_zero
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.residual_tests import ChannelTest

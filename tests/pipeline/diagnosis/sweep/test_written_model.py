@@ -14,8 +14,9 @@ from flexspline.geometry.load import design_from
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
+from flexspline.pipeline.diagnosis.sweep.analysis import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.calibrated_residual import calibrated_residual
-from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 FOREIGN = ("unit_gain",)
 ALIKE = (

@@ -11,8 +11,9 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.structure import DraggedCrossing
+from flexspline.pipeline.diagnosis.sweep.diagnose import judge
 from flexspline.pipeline.diagnosis.sweep.rig_faults.dragged_crossing import spread_sides
-from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep, judge
+from flexspline.pipeline.diagnosis.sweep.verdict import JudgedSweep
 
 FRICTION_Nm, COMPLIANCE, GAP_ARCSEC = 3.0, 11.0, 70.0
 """Compliance in arcsec per N·m."""
