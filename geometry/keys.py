@@ -10,6 +10,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.part import Part
+from flexspline.geometry.ranges import is_number
 from flexspline.geometry.schema import Location
 
 PLACE = re.compile(r"\d{1,9}")
@@ -28,7 +29,7 @@ def value_at(design: Design, key: str) -> float | None:
     except DesignError:
         return None
     value = table.get(last) if isinstance(table, dict) else None
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+    return float(value) if is_number(value) else None
 
 
 def has_table_of(design: Design, key: str) -> bool:

@@ -15,6 +15,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING, DesignError, DesignFileError
 from flexspline.geometry.input_file import LARGEST_TOML_BYTES, InputFileError, read_input
 from flexspline.geometry.plain_words import kind_of, without_tag
+from flexspline.geometry.ranges import is_number
 from flexspline.geometry.schema import ends_of
 from flexspline.geometry.toml_read import EmptyTomlError, TomlError, toml_tables
 
@@ -141,7 +142,7 @@ def _what(refused: DesignError) -> str:
 
 def _nearest(value: object, ends: list[float]) -> list[float]:
     """The end that lies nearest to a value; all where it is no number."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+    if not is_number(value) or value != value:
         return ends
     if value >= ends[-1]:
         return ends[-1:]

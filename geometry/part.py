@@ -10,7 +10,6 @@ from typing import Any
 from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.listed import joined
 from flexspline.geometry.material import Material
-from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian, SAME_mm
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.shaft_shape import Shaft, Slot
@@ -48,7 +47,7 @@ class Part:
     @cached_property
     def meridian(self) -> Meridian:
         """The outline in the (r, z) half plane, holes and keyway left out."""
-        return meridian_of(self.shape)
+        return self.shape.meridian()
 
     @property
     def length(self) -> float:

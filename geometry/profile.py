@@ -23,35 +23,29 @@ class Corner:
 def closed(corners: Sequence[Corner], cuts: Sequence[Segment]) -> Meridian:
     """Round the corners that ask for it and join them to a closed outline."""
     kept = [c for i, c in enumerate(corners) if distance(c.at, corners[i - 1].at) > SAME_mm]
-    entry: list[Point] = []
-    leave: list[Point] = []
-    arcs: list[Segment | None] = []
-    for i, c in enumerate(kept):
-        if c.fillet <= 0:
-            entry.append(c.at)
-            leave.append(c.at)
-            arcs.append(None)
-            continue
-        p = np.array(c.at)
-        u = np.array(kept[i - 1].at) - p
-        v = np.array(kept[(i + 1) % len(kept)].at) - p
-        u /= np.linalg.norm(u)
-        v /= np.linalg.norm(v)
-        half = acos(float(np.clip(u @ v, -1, 1))) / 2
-        trim = c.fillet / tan(half)
-        centre = p + (u + v) / np.linalg.norm(u + v) * c.fillet / np.sin(half)
-        a, b = pair(p + trim * u), pair(p + trim * v)
-        entry.append(a)
-        leave.append(b)
-        arcs.append(Segment(a, b, pair(centre)))
+    around = zip([kept[-1], *kept], kept, [*kept[1:], kept[0]], strict=False)
+    fillets = [_fillet(before.at, c, after.at) for before, c, after in around]
     segments: list[Segment] = []
-    for i, c in enumerate(kept):
-        if distance(leave[i - 1], entry[i]) > SAME_mm:
-            segments.append(Segment(leave[i - 1], entry[i], patch=c.patch))
-        arc = arcs[i]
-        if arc is not None:
-            segments.append(arc)
+    for before, c, fillet in zip([fillets[-1], *fillets], kept, fillets, strict=False):
+        if distance(before.end, fillet.start) > SAME_mm:
+            segments.append(Segment(before.end, fillet.start, patch=c.patch))
+        if fillet.centre is not None:
+            segments.append(fillet)
     return Meridian(tuple(segments), tuple(cuts))
+
+
+def _fillet(before: Point, corner: Corner, after: Point) -> Segment:
+    """The arc that rounds a corner between its neighbours; of a sharp one the corner alone, no arc."""
+    if corner.fillet <= 0:
+        return Segment(corner.at, corner.at)
+    p = np.array(corner.at)
+    u, v = np.array(before) - p, np.array(after) - p
+    u /= np.linalg.norm(u)
+    v /= np.linalg.norm(v)
+    half = acos(float(np.clip(u @ v, -1, 1))) / 2
+    trim = corner.fillet / tan(half)
+    centre = p + (u + v) / np.linalg.norm(u + v) * corner.fillet / np.sin(half)
+    return Segment(pair(p + trim * u), pair(p + trim * v), pair(centre))
 
 
 def pair(p: np.ndarray) -> Point:

@@ -6,9 +6,14 @@ of the unit or of the exponent, and numbers such as 1e-310 would divide by zero 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from flexspline.geometry.errors import plain_number
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is a number, whole or not; true and false are none."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 class Range(NamedTuple):

@@ -1,4 +1,4 @@
-"""The output shaft as the design file states it: its segments and its keyway."""
+"""The output shaft as the design file states it: its segments, its keyway and its profile."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from pydantic import Field
 
 from flexspline.geometry.bolts import Bolted
 from flexspline.geometry.fields import DesignTable, Length, LengthOrZero
+from flexspline.geometry.outline import Meridian, SAME_mm, Segment
+from flexspline.geometry.profile import Corner, closed
 
 
 class ShaftSegment(DesignTable):
@@ -76,3 +78,29 @@ class Shaft(Bolted):
             return None
         floor = self.segment[-1].outer_diameter_mm / 2 - key.depth_mm
         return Slot(floor, key.width_mm / 2, self.length - key.length_mm, key.length_mm)
+
+    def meridian(self) -> Meridian:
+        """Up the outside, down the bore (docs/contract.md); a fillet at every inside corner outside."""
+        grip_start = self.length - self.grip_length_mm
+        outer: list[Corner] = []
+        inner: list[Corner] = []
+        cuts: list[Segment] = []
+        radii = [0.0, *(s.outer_diameter_mm / 2 for s in self.segment), 0.0]
+        z = 0.0
+        for i, segment in enumerate(self.segment):
+            top = z + segment.length_mm
+            if i == len(self.segment) - 1:
+                top = self.length  # the same rounding as grip_start's
+            below, r, above = radii[i : i + 3]
+            bore = segment.inner_diameter_mm / 2
+            low, high = (
+                self.fillet_mm if beside > r + SAME_mm else 0.0 for beside in (below, above)
+            )
+            outer.append(Corner((r, z), None if i else "mount", low))
+            if z + SAME_mm < grip_start < top - SAME_mm:
+                outer.append(Corner((r, grip_start)))
+                cuts.append(Segment((bore, grip_start), (r, grip_start)))
+            outer.append(Corner((r, top), "grip" if grip_start < top - SAME_mm else None, high))
+            inner += [Corner((bore, z)), Corner((bore, top))]
+            z = top
+        return closed([inner[0], *outer, *inner[:0:-1]], cuts)

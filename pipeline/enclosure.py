@@ -66,11 +66,6 @@ def two_bodies(part: Part, solve: Callable[[Part], Stiffness]) -> TwoBodies:
     return TwoBodies(solve(bodies.cut), solve(bodies.whole))
 
 
-def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
-    """Solve both bodies of a part and return their enclosure; errors as of both functions."""
-    return two_bodies(part, solve).enclosure()
-
-
 def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     """Return the enclosure by two solved bodies; K is its middle.
 

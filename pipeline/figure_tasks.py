@@ -31,18 +31,14 @@ class Figures:
     peaks: dict[str, StressPeak] = field(default_factory=dict)
     missing: dict[str, Shortfall] = field(default_factory=dict)
 
-    def add(self, other: Figures) -> None:
-        """Add the figures of another task."""
-        self.K |= other.K
-        self.peaks |= other.peaks
-        self.missing |= other.missing
-
 
 @dataclass(frozen=True)
 class _TaskResult:
-    """Of one task; what a copy of this process remembers by then, and the seconds of its stages there."""
+    """A figure, or why it is missing; what a copy of this process remembers by then, and its stages [s]."""
 
-    figures: Figures
+    name: str
+    figure: Stiffness | StressPeak | None
+    missing: dict[str, Shortfall]
     passing: dict[str, Any]
     failed: dict[str, ComputationError]
     seconds: dict[str, float]
@@ -75,14 +71,18 @@ class FigureTasks:
         self._add("half_seat_peak", partial(half_seat_peak, rim))
 
     def _add(self, name: str, solve: Callable[[], Stiffness | StressPeak]) -> None:
-        self._tasks.append(partial(self._result, partial(_attempt, name, solve)))
+        self._tasks.append(partial(self._result, name, solve))
 
     def figures(self, begun: Callable[[], None]) -> Figures:
         """Run all tasks and return their figures; errors as of the tasks. `begun`: as of `results_of`."""
         figures = Figures()
 
         def take_in(number: int, result: _TaskResult) -> None:
-            figures.add(result.figures)
+            figures.missing |= result.missing
+            if isinstance(result.figure, StressPeak):
+                figures.peaks[result.name] = result.figure
+            elif result.figure is not None:
+                figures.K[result.name] = result.figure
             self._learn(result)
             if number in self._parts:
                 self._solved(self._parts[number])
@@ -108,25 +108,12 @@ class FigureTasks:
         for stage, seconds in result.seconds.items():
             self._context.progress.add(stage, seconds)
 
-    def _result(self, make: Callable[[], Figures]) -> _TaskResult:
+    def _result(self, name: str, solve: Callable[[], Stiffness | StressPeak]) -> _TaskResult:
+        cache, tried = self._context.cache, Attempts()
+        before = dict(self._context.progress.seconds)
+        figure = tried.get(name, solve)
         if os.getpid() == self._process:
-            return _TaskResult(make(), {}, {}, {})
-        cache, seconds = self._context.cache, dict(self._context.progress.seconds)
-        figures = make()
-        return _TaskResult(
-            figures,
-            dict(cache.passing),
-            dict(cache.failed),
-            {k: s - seconds.get(k, 0.0) for k, s in self._context.progress.seconds.items()},
-        )
-
-
-def _attempt(name: str, solve: Callable[[], Stiffness | StressPeak]) -> Figures:
-    tried = Attempts()
-    figure = tried.get(name, solve)
-    figures = Figures(missing=tried.missing)
-    if isinstance(figure, StressPeak):
-        figures.peaks[name] = figure
-    elif figure is not None:
-        figures.K[name] = figure
-    return figures
+            return _TaskResult(name, figure, tried.missing, {}, {}, {})
+        seconds = {k: s - before.get(k, 0.0) for k, s in self._context.progress.seconds.items()}
+        known = dict(cache.passing), dict(cache.failed)
+        return _TaskResult(name, figure, tried.missing, *known, seconds)

@@ -25,7 +25,7 @@ from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.drawn_teeth import of_toothed
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import two_bodies
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.refining import Refining
@@ -120,7 +120,7 @@ def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
         return solve(of_1_GPa(body)).times(body.material.youngs_modulus_GPa)
 
     if part.name == "flexspline" and part.bolts is not None:
-        return enclosed(part, solved)
+        return two_bodies(part, solved).enclosure()
     K = solved(part.without_holes())
     return replace(K, guaranteed=K.guaranteed and part.is_revolved)
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol, get_args
 
-from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import Material
 from flexspline.geometry.part_name import PartName
@@ -68,7 +67,7 @@ class PassedLimit:
     key: str = ""
 
 
-def share_of_limit(peak: StressPeak, material: Material) -> float | None:
+def share_of_limit(peak: Peak, material: Material) -> float | None:
     """Return peak over stated fatigue limit; None without one, or where the stress rule decides the peak."""
     if material.fatigue_limit_MPa is None or peak.at_excluded_border:
         return None

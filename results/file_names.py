@@ -19,11 +19,10 @@ RENDERED = (*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torq
 """Pictures of a run that VTK draws."""
 CURVE, LOADS = "gear_torque_angle", "gear_loads"
 """Charts of `gear` and of a run."""
-ChartSection = Literal["budget", "gear", "stress", "solver"]
+ChartSection = Literal["budget", "gear", "solver"]
 CHARTS_OF: Mapping[ChartSection, tuple[str, ...]] = {
     "budget": ("backlash_budget", "torque_angle"),
     "gear": (CURVE, LOADS),
-    "stress": (),
     "solver": ("convergence",),
 }
 """Pictures of a run that matplotlib draws, by the section of the report and in their order there;

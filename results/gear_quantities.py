@@ -91,14 +91,9 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         Quantity(
             f"compliance_shares.{part}",
             "",
-            f"Share of the {name} in the compliance at rated torque",
+            f"Share of the {part} in the compliance at rated torque",
             decimals=3,
         )
-        for part, name in (
-            ("flexspline", "flexspline"),
-            ("shaft", "shaft"),
-            ("teeth", "teeth"),
-            ("bearing", "bearing"),
-        )
+        for part in ("flexspline", "shaft", "teeth", "bearing")
     ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +16,6 @@ import typer
 from flexspline.results.exit_status import FAILED, INTERRUPTED, REFUSED
 
 if TYPE_CHECKING:
-    from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
     from flexspline.pipeline.parts import AnalysisContext
     from flexspline.pipeline.progress import Progress
@@ -155,13 +154,11 @@ def keep(job: Job, stiffnesses: Stiffnesses, as_json: bool) -> None:
     deliver(job, record, as_json)
 
 
-def warn(
-    design: Design, stiffnesses: Stiffnesses, fields: Mapping[str, SolidField] | None = None
-) -> None:
+def warn(design: Design, stiffnesses: Stiffnesses) -> None:
     """A line on stderr for each figure that missed its tolerance, or is missing."""
     from flexspline.results.warned import shortfalls
 
-    tell_all(shortfalls(design, stiffnesses, fields))
+    tell_all(shortfalls(design, stiffnesses))
 
 
 def tell_all(warnings: Iterable[str]) -> list[str]:

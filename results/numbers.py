@@ -48,6 +48,12 @@ def with_power(value: float, digits: int = 1) -> str:
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+def round_number(most: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not above `most`, but for rounding."""
+    decade = 10.0 ** floor(log10(most))
+    return float(f"{max(s * decade for s in (1.0, 2.0, 5.0) if s * decade <= 1.0001 * most):.1g}")
+
+
 def decimals_for(value: float, digits: int) -> int:
     """Decimals that show so many significant digits."""
     if value == 0:

@@ -7,12 +7,14 @@ from typing import Any
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.material import Material
-from flexspline.pipeline.stress_limits import ON_HALF_SEAT, share_of_limit
+from flexspline.pipeline.stress_limits import ON_HALF_SEAT, TabledPeak, share_of_limit
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""
+AT_BORDER = "_at_excluded_border"
+"""End of the key of a peak's mark, after the peak's name."""
 HALF_SEAT = f"{ON_HALF_SEAT}_mises_MPa"
 WITHOUT_HOLES = "wave_generator_peak_without_holes_mises_MPa"
 """Of result.json: the peak on the whole seat with which that on half of it is compared."""
@@ -31,11 +33,22 @@ def border_note(exclusion_mm: float, twice_MPa: float | None) -> str:
     return f"{text} ({twice} at {2 * exclusion_mm:.3g} mm)"
 
 
+def at_border(key: str, figures: Mapping[str, Any]) -> bool:
+    """Whether a figure of result.json, or of a study's row, is a peak at the border of what is left out."""
+    return bool(figures.get(f"{key.removesuffix('_mises_MPa')}{AT_BORDER}"))
+
+
+def tabled_peak(name: str, figures: Mapping[str, Any]) -> TabledPeak:
+    """A peak of result.json, or of a study's row, by its name there."""
+    key = f"{name}_mises_MPa"
+    return TabledPeak(figures[key], at_border(key, figures), figures.get(f"{name}_excluded_mm"))
+
+
 def marked(figures: Mapping[str, Any], key: str) -> str:
     """The note of a figure of result.json; "" for all but peaks that are not the part's alone."""
-    name = key.removesuffix("_mises_MPa")
-    if name == key or not figures.get(f"{name}_at_excluded_border"):
+    if not at_border(key, figures):
         return ""
+    name = key.removesuffix("_mises_MPa")
     twice = figures.get(f"{name}_mises_at_twice_excluded_MPa")
     return border_note(figures[f"{name}_excluded_mm"], twice)
 

@@ -146,21 +146,6 @@ def mass_record(design: Design) -> Record:
     return {"flexspline_mass_g": mass.flexspline_g, "shaft_mass_g": mass.shaft_g}
 
 
-def peak_of(name: str, record: Mapping[str, Any]) -> StressPeak:
-    """The peak that `peak_record` wrote."""
-    from flexspline.fea.types import StressPeak
-
-    x, y, z = record[f"{name}_at_mm"]
-    return StressPeak(
-        record[f"{name}_mises_MPa"],
-        (x, y, z),
-        "",
-        record[f"{name}_excluded_mm"],
-        record[f"{name}_at_excluded_border"],
-        record.get(f"{name}_mises_at_twice_excluded_MPa"),
-    )
-
-
 def run_record(result: RunResult, wall_s: float) -> Record:
     """Everything that `flexspline run` found."""
     return {

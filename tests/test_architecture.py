@@ -273,10 +273,10 @@ def test_tests_use_no_private_name_of_the_program() -> None:
 @pytest.mark.parametrize(
     "use",
     [
-        "from flexspline.geometry.meridian import {}",
+        "from flexspline.geometry.outline import {}",
         "meridian.{}(1)",
         "monkeypatch.setattr(meridian, '{}', None)",
-        "CODE = 'from flexspline.geometry.meridian import {}'",
+        "CODE = 'from flexspline.geometry.outline import {}'",
     ],
 )
 def test_the_check_sees_a_private_name(use: str) -> None:

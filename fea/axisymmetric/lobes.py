@@ -98,6 +98,15 @@ def lobe_coefficient(n: int) -> float:
     return 2 / pi * p**2 * sin(n * LOBE_HALF_WIDTH) / (n * (p**2 - n**2))
 
 
+def lobe_traction(model: HarmonicModel) -> float:
+    """Return the height t0 [MPa] of the bumps for LOBE_TORQUE_NMM.
+
+    The torque of a traction t0·t(φ) is t0 R² width ∫ t dφ = t0 R² width 2 φ0.
+    """
+    r, z = model.space.places[model.on("mesh")].T
+    return float(LOBE_TORQUE_NMM / (r[0] ** 2 * np.ptp(z) * 2 * LOBE_HALF_WIDTH))
+
+
 def lobe_harmonic(n: int) -> Harmonic:
     """Return the load's harmonic n; for n = 0 it is torsion."""
     return Harmonic(n, torsion=n == 0)
@@ -209,10 +218,7 @@ def solve_lobes(
     model: HarmonicModel, supported: bool, tail: float, held: tuple[str, ...] = ("mount",)
 ) -> LobeSolution:
     """Add even harmonics until the rest cannot add more than `tail` of the energy; `held`: patches."""
-    radius = model.space.places[model.on("mesh"), 0]
-    width = np.ptp(model.space.places[model.on("mesh"), 1])
-    # torque of a traction t0·t(φ): t0 R² width ∫ t dφ = t0 R² width 2 φ0
-    peak = LOBE_TORQUE_NMM / (radius[0] ** 2 * width * 2 * LOBE_HALF_WIDTH)
+    peak = lobe_traction(model)
     square = 2 * 3 / 4 * LOBE_HALF_WIDTH / pi  # Σ t_n² over n > 0, + 2 t_0²: 1/π ∫ t² of two bumps
     left = square - 2 * lobe_coefficient(0) ** 2
     energies: list[float] = []

@@ -166,6 +166,5 @@ class _MeshedField:
             stress=self._recovery.nodal,
             peak=replace(judged_peak, shortfall=shortfall),
             peak_rz=peak.rz,
-            peak_phi=phi,
             levels=tuple(self._levels),
         )

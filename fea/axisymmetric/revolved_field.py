@@ -34,9 +34,8 @@ class RevolvedField:
     triangles : (m, 6) their numbers: corners, then the middles of 01, 12, 02; any sense.
     displacement : (count, 3) amplitudes U, V, W [mm].
     stress : (count, 6) smoothed amplitudes rr, θθ, zz, rz, rθ, θz [MPa].
-    peak : the largest von Mises stress that counts, Cartesian place at angle `peak_phi`.
+    peak : the largest von Mises stress that counts, its Cartesian place at the first of the angles with it.
     peak_rz : the same place on the meridian [mm].
-    peak_phi : its angle [rad], the first of those with the same stress.
     levels : the meshes.
     """
 
@@ -47,7 +46,6 @@ class RevolvedField:
     stress: np.ndarray
     peak: StressPeak
     peak_rz: tuple[float, float]
-    peak_phi: float
     levels: tuple[StressLevel, ...]
 
     def mises(self, phi: float) -> np.ndarray:

@@ -13,9 +13,9 @@ from math import pi
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
-from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, lobe_coefficient
+from flexspline.fea.axisymmetric.lobes import lobe_coefficient, lobe_harmonic, lobe_traction
 from flexspline.fea.cylindrical import RADIAL, TANGENTIAL
-from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
+from flexspline.fea.lobe_torque import stiffness_of_work
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,7 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
     seat = model.on("seat")
     spread = _spread(model, seat, most_places)
     phi = np.arange(angles) * pi / angles
-    ring = model.space.places[model.on("mesh")]
-    peak = LOBE_TORQUE_NMM / (ring[0, 0] ** 2 * np.ptp(ring[:, 1]) * 2 * LOBE_HALF_WIDTH)
+    peak = lobe_traction(model)
     push = np.zeros((3 * model.space.count, spread.shape[1]))
     push[3 * seat + RADIAL] = spread
     free = np.zeros((angles, spread.shape[1]))
@@ -76,7 +75,7 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
     work = 0.0
     for n in range(0, angles + 1, 2):
         # a force of 1 N/rad times cos nφ has the nodal amplitude ∫cos² nφ dφ
-        wave = Harmonic(n, torsion=n == 0)
+        wave = lobe_harmonic(n)
         twist = (peak * lobe_coefficient(n) * model.pressed("mesh", TANGENTIAL, wave))[:, None]
         if n:
             both = responses(model, wave, np.column_stack([push, twist]))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING
 from flexspline.geometry.keys import has_table_of, leaves, location_of, value_at
 from flexspline.geometry.near_key import nearest_key
+from flexspline.geometry.ranges import is_number
 from flexspline.geometry.schema import allowed, dotted, node_at
 from flexspline.pipeline.backlash import STD_KEY
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
-from flexspline.pipeline.study.study import Study, StudyError, is_whole
+from flexspline.pipeline.study.study import Study, StudyError
 
 SMALLEST_SPREAD = 1e-6
 """Of the value: no gauge tells a part in a million, and differences of K drown in rounding."""
@@ -81,13 +81,13 @@ def _check_design_key(study: Study, table: str, key: str) -> None:
     location = location_of(key)
     node = node_at(location, kind)
     # one spelling: a key is looked for in [vary], [link] and [tolerance]
-    is_number = dotted(location) == key and node.get("type") in ("number", "integer")
-    if is_number and has_table_of(study.design, key):
+    holds_number = dotted(location) == key and node.get("type") in ("number", "integer")
+    if holds_number and has_table_of(study.design, key):
         if table != "tolerance" or value_at(study.design, key) is not None:
             return
         reason = "has no value in the design file that could scatter; state it there"
         raise StudyError(f'tolerance."{key}"', {}, reason)
-    known = _numeric_keys(study.design)
+    known = [name for name, value in leaves("", study.design.tables) if is_number(value)]
     near = nearest_key(key, known)
     reason = f"did you mean {near}?" if near and near != key else f"e.g. {known[0]}"
     raise StudyError(f'{table}."{key}"', {}, f"is not a number in the design file; {reason}")
@@ -98,21 +98,12 @@ def _check_spread(study: Study, key: str, spread: Spread) -> None:
     name, amount = (
         ("std", spread.std) if spread.plus_minus is None else ("plus_minus", spread.plus_minus)
     )
-    node = node_at(location_of(key), study.design.flexspline.kind)
-    value = value_at(study.design, key)
-    least = SMALLEST_SPREAD * max(abs(float(value or 0)), float(node["minimum"])) or SMALLEST_SPREAD
-    most = float(node["maximum"])
+    lowest, most = study.range_of(key)
+    size = max(abs(value_at(study.design, key) or 0.0), lowest)
+    least = SMALLEST_SPREAD * size or SMALLEST_SPREAD
     if amount is None or not least <= amount <= most:
         reason = f"must be a number from {least:g} to {most:g}"
         raise StudyError(f'tolerance."{key}".{name}', amount, reason)
-
-
-def _numeric_keys(design: Design) -> list[str]:
-    return [
-        key
-        for key, value in leaves("", design.tables)
-        if isinstance(value, int | float) and not isinstance(value, bool)
-    ]
 
 
 def _check_span(study: Study, key: str, span: VariedSpan) -> None:
@@ -126,12 +117,10 @@ def _check_span(study: Study, key: str, span: VariedSpan) -> None:
     low, high = span.ends
     if not listed and low >= high:
         raise StudyError(f"{name}.min", low, f"must be below max = {high:g}")
-    node = node_at(location_of(key), study.design.flexspline.kind)
+    least, most = study.range_of(key)
     for value in span.values or span.ends:
-        if is_whole(study.design, key) and value != int(value):
+        if key in study.whole and value != int(value):
             raise StudyError(name, value, "must hold whole numbers")
-        least = float(node["minimum"])
-        most = float(node.get("maximum", value))
         if not least <= value <= most:
             words = allowed(location_of(key), study.design.flexspline.kind)
             raise StudyError(name, value, f"must be {words}")

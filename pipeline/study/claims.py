@@ -44,6 +44,11 @@ class Try:
     finished: bool
     outcome: Outcome | None = None
 
+    @property
+    def slot(self) -> int:
+        """Which design."""
+        return self.claim.slot
+
 
 @dataclass
 class Claims:
@@ -100,8 +105,8 @@ class Claims:
                 )
 
     def add_try(self, one: Try) -> None:
-        if one.claim.slot not in self._rows:
-            self.tries.setdefault(one.claim.slot, {})[one.trial_id] = one
+        if one.slot not in self._rows:
+            self.tries.setdefault(one.slot, {})[one.trial_id] = one
 
     def add_row(self, number: int, row: Row) -> None:
         known = self._rows.get(row.slot)

@@ -8,11 +8,11 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import Protocol
 
-from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.claims import Row, Try
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.local_workers import WORKER_DIED
-from flexspline.pipeline.study.store import BEAT_S, ClaimedDesign, Finished, TrialStore
+from flexspline.pipeline.study.store import BEAT_S, Finished, TrialStore
 
 POLL_S = 1.0
 """How long to wait for a result before looking after the rest."""
@@ -32,7 +32,7 @@ class Source(Protocol):
     def ahead(self, width: int) -> int:
         """Return how many designs wait for `width` workers, so that none is idle between two designs."""
 
-    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
+    def claim(self, store: TrialStore, count: int) -> list[Try]:
         """Claim at most `count` designs that nobody has, at least one where there is one."""
 
     def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
@@ -83,7 +83,7 @@ def evaluate_all(
     """
     began = beaten = time.monotonic()
     next_word = began + WATCH_S
-    pending: dict[Future, ClaimedDesign] = {}
+    pending: dict[Future, Try] = {}
     _adopt(source, store)
     before = len(within(store.rows(), source.size))
 
@@ -129,7 +129,7 @@ def within(rows: Sequence[Row], size: int) -> tuple[Row, ...]:
 
 
 def _give_out(
-    pending: dict[Future, ClaimedDesign],
+    pending: dict[Future, Try],
     pool: WorkerPool,
     evaluate: Callable[[Task], Outcome],
     source: Source,
@@ -146,7 +146,7 @@ def _give_out(
 
 
 def _store_finished(
-    pending: dict[Future, ClaimedDesign], pool: WorkerPool, source: Source, store: TrialStore
+    pending: dict[Future, Try], pool: WorkerPool, source: Source, store: TrialStore
 ) -> bool:
     """Store what is finished, after a wait of at most POLL_S; whether anything was.
 

@@ -124,24 +124,22 @@ def figures_of(
         wanted["K_e"] = lambda: fast_K_e(design)
     figures: dict[str, float] = {}
     missing: dict[str, str] = {}
-    for name, solve in wanted.items():
+
+    def attempt(name: str, make: Callable[[], Mapping[str, float]]) -> None:
         try:
-            figures |= _figures(name, solve())
+            figures.update(make())
         except DESIGN_FAULTS as fault:
             missing[name] = str(fault)
+
+    for name, solve in wanted.items():
+        attempt(name, partial(_solved, name, solve))
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
-            figures = with_holes(figures, design, holes)
+            figures |= with_holes(figures, design, holes)
         if "gear" in solves and "K_e" not in missing:
-            try:
-                figures |= _gear(design, figures["K_e_Nm_per_rad"])
-            except DESIGN_FAULTS as fault:
-                missing["gear"] = str(fault)
+            attempt("gear", lambda: _gear(design, figures["K_e_Nm_per_rad"]))
         if not {in_sum, "K_e"} & set(missing):
-            try:
-                figures |= _sum(design, figures)
-            except DESIGN_FAULTS as fault:
-                missing["backlash_arcsec"] = str(fault)
+            attempt("backlash_arcsec", lambda: _sum(design, figures))
     mass = masses(design)
     sizes = (
         mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
@@ -172,9 +170,10 @@ def _gear(design: Design, K_e_Nm_per_rad: float) -> dict[str, float]:
     return {key: float(getattr(curve, key)) for key in GIVEN_BY["gear"]}
 
 
-def _figures(name: str, solved: Stiffness | StressPeak) -> dict[str, float]:
+def _solved(name: str, solve: Callable[[], Stiffness | StressPeak]) -> dict[str, float]:
     """A stiffness, its bounds, and 1 where these are theorems, else 0; or a peak, and 1 where it lies at
     the excluded border, else 0."""
+    solved = solve()
     if isinstance(solved, StressPeak):
         peak = settled_peak(solved)
         return {

@@ -98,11 +98,10 @@ def drifts(keys: Iterable[str]) -> bool:
 def with_holes(
     solved: Mapping[str, float], design: Design, effect: HolesEffect
 ) -> dict[str, float]:
-    """Return the figures with K_e and its bounds corrected, and the factor beside them."""
+    """Return K_e and its bounds corrected, and the factor beside them."""
     K, low, high = stiffness_keys("K_e")
     value, doubt = effect.factor(design, solved[K])
     return {
-        **solved,
         K: solved[K] * value,
         low: solved[low] * (value - doubt),
         high: solved[high] * (value + doubt),

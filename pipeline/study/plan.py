@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -15,17 +13,6 @@ from flexspline.pipeline.study.trial_tables import Values
 
 ROOT_ROUNDING = 1e-9
 """Steps of an axis: 125 ** (1 / 3) is 4.999…, short by 1e-15, and no other root is as near."""
-
-
-class StudyPlan(Protocol):
-    """A plan gives values of design `index`, the same whoever asks and whenever."""
-
-    @property
-    def size(self) -> int:
-        """Number of designs."""
-
-    def point(self, index: int) -> Values:
-        """Return the values by varied key."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +27,7 @@ class Listed:
         return len(self.points)
 
     def point(self, index: int) -> Values:
-        return dict(zip(self.keys, (float(v) for v in self.points[index]), strict=True))
+        return dict(zip(self.keys, self.points[index].tolist(), strict=True))
 
 
 @dataclass(frozen=True)
@@ -59,6 +46,10 @@ class GridPlan:
         return {
             key: float(axis[int(i)]) for (key, axis), i in zip(self.axes.items(), at, strict=True)
         }
+
+
+StudyPlan = Listed | GridPlan
+"""Values of each design, the same whoever asks and whenever."""
 
 
 def grid(study: Study) -> GridPlan:
@@ -81,41 +72,28 @@ def grid(study: Study) -> GridPlan:
     return GridPlan(axes)
 
 
-@dataclass(frozen=True)
-class Sobol:
-    """Owen-scrambled Sobol points; a longer study begins with the same designs."""
+def sobol(study: Study) -> Listed:
+    """Return Owen-scrambled Sobol points; a longer study begins with the same designs."""
+    from scipy.stats import qmc
 
-    study: Study
-
-    @property
-    def size(self) -> int:
-        return self.study.file.run.evaluations
-
-    @cached_property
-    def _unit(self) -> np.ndarray:
-        """Points (n, k) in [0, 1), n the power of two that holds all: what scipy draws in one piece."""
-        from scipy.stats import qmc
-
-        engine = qmc.Sobol(len(self.study.file.vary), scramble=True, seed=self.study.file.run.seed)
-        return engine.random_base2((self.size - 1).bit_length())
-
-    def point(self, index: int) -> Values:
-        return {
-            key: from_unit(self.study, key, float(u))
-            for key, u in zip(self.study.file.vary, self._unit[index], strict=True)
-        }
+    run, keys = study.file.run, tuple(study.file.vary)
+    engine = qmc.Sobol(len(keys), scramble=True, seed=run.seed)
+    drawn = engine.random_base2((run.evaluations - 1).bit_length())  # what scipy draws in one piece
+    return Listed(keys, spread(study, drawn[: run.evaluations]))
 
 
-def from_unit(study: Study, key: str, u: float) -> float:
-    """Spread a number in [0, 1) over a key's span."""
-    span = study.file.vary[key]
-    if span.values is not None:
-        return span.values[min(int(u * len(span.values)), len(span.values) - 1)]
-    low, high = span.ends
-    if key in study.whole:
-        count = int(high) - int(low) + 1
-        return float(int(low) + min(int(u * count), count - 1))
-    return low + u * (high - low)
+def spread(study: Study, unit: np.ndarray) -> np.ndarray:
+    """Return values (n, k) of the varied keys: numbers in [0, 1), (n, k), spread over each key's span."""
+    columns = []
+    for (key, span), u in zip(study.file.vary.items(), unit.T, strict=True):
+        low, high = span.ends
+        if span.values is not None:
+            columns.append(np.array(span.values)[(u * len(span.values)).astype(int)])
+        elif key in study.whole:
+            columns.append(low + np.floor(u * (high - low + 1)))
+        else:
+            columns.append(low + u * (high - low))
+    return np.column_stack(columns)
 
 
 def linked(study: Study, values: Values) -> dict[str, float]:

@@ -52,11 +52,9 @@ class StudyResult:
     @property
     def nearest(self) -> Row | None:
         """Return the row that oversteps the constraints least, by shares of their limits."""
-        limits = self.study.file.constraint
 
         def overstep(row: Row) -> float:
-            figures = row.outcome.figures
-            return sum(max(0.0, x.excess(figures[k])) / x.size for k, x in limits.items())
+            return sum(max(0.0, e) for e in self.study.excesses(row.outcome.figures))
 
         return min(self.built, key=overstep, default=None)
 
@@ -73,18 +71,27 @@ class StudyResult:
     @property
     def feasible(self) -> tuple[Row, ...]:
         """Of those built, the rows that keep to every constraint."""
-        limits = self.study.file.constraint
-        return tuple(
-            r for r in self.built
-            if all(limit.excess(r.outcome.figures[k]) <= 0 for k, limit in limits.items())
-        )  # fmt: skip
+        return tuple(r for r in self.built if self._is_feasible(r))
+
+    @property
+    def not_allowed(self) -> tuple[Row, ...]:
+        """Of those built, the rows that break a constraint."""
+        return tuple(r for r in self.built if not self._is_feasible(r))
+
+    def _is_feasible(self, row: Row) -> bool:
+        return all(e <= 0 for e in self.study.excesses(row.outcome.figures))
+
+    def keeping(self, key: str) -> tuple[Row, ...]:
+        """Of those built, the rows that keep to the constraint on a figure."""
+        limit = self.study.file.constraint[key]
+        return tuple(r for r in self.built if limit.excess(r.outcome.figures[key]) <= 0)
 
     @property
     def pareto(self) -> tuple[Row, ...]:
         """Feasible rows that no other feasible row beats; the first objective's best first."""
         if not self.study.file.objective:
             return ()
-        costs = {r.slot: self._costs(r) for r in self.feasible}
+        costs = {r.slot: self.costs(r) for r in self.feasible}
         kept = [
             r for r in self.feasible if not any(_beats(c, costs[r.slot]) for c in costs.values())
         ]
@@ -94,7 +101,7 @@ class StudyResult:
         """So many designs to look at: of one objective the ranking; of several, spread evenly over the
         front, or all of it where it is shorter."""
         if len(self.study.file.objective) == 1:
-            return tuple(sorted(self.feasible, key=self._costs))[:count]
+            return tuple(sorted(self.feasible, key=self.costs))[:count]
         front = self.pareto
         if len(front) <= count:
             return front
@@ -103,9 +110,9 @@ class StudyResult:
 
     def is_better(self, one: Row, other: Row) -> bool:
         """Whether a design is better in the first objective in which both differ."""
-        return self._costs(one) < self._costs(other)
+        return self.costs(one) < self.costs(other)
 
-    def _costs(self, row: Row) -> tuple[float, ...]:
+    def costs(self, row: Row) -> tuple[float, ...]:
         """Objectives, all to be made small."""
         sign = {"minimize": 1.0, "maximize": -1.0}
         objective = self.study.file.objective

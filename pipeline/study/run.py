@@ -28,7 +28,7 @@ from flexspline.pipeline.study.holes import (
     drifts,
     holes_of,
 )
-from flexspline.pipeline.study.plan import Sobol, grid
+from flexspline.pipeline.study.plan import grid, sobol
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
@@ -50,7 +50,7 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
     solves = solves_of(study, USUAL_SOLVES)
     if study.file.run.method == "optimize":
         return SampledDesigns(study, solves, holes=holes)
-    plan = grid(study) if study.file.run.method == "grid" else Sobol(study)
+    plan = grid(study) if study.file.run.method == "grid" else sobol(study)
     return PlannedDesigns(study, solves, plan, holes=holes)
 
 

@@ -7,7 +7,7 @@ shares the study. Seeded by (study's seed, trial's number) each trial has its ow
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -28,14 +28,6 @@ STARTUP = 10
 """Random designs before TPE models what it has seen: Optuna's default."""
 
 
-def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
-    """Return how far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
-    return [
-        limit.excess(figures[k]) / limit.size if k in figures else 1.0
-        for k, limit in study.file.constraint.items()
-    ]
-
-
 def start_in_spans(study: Study) -> Values:
     """Return the values that the study begins with; none where a varied key has none within its span."""
     values = study.start_values
@@ -54,7 +46,7 @@ def sampler_of(study: Study) -> BaseSampler:
     file = study.file
 
     def constraint_values(trial: FrozenTrial) -> Sequence[float]:
-        return excesses(study, trial.user_attrs.get(ROW, {}).get("figures") or {})
+        return study.excesses(trial.user_attrs.get(ROW, {}).get("figures") or {})
 
     constraints = constraint_values if file.constraint else None
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.fields import FieldInfo
 
 Method = Literal["grid", "sobol", "optimize", "tolerance"]
+MOST_EVALUATIONS = 1_000_000
 LARGEST_NUMBER = 1e18
 """No figure of a gear comes near: stiffness ends at 1e15 N·m/rad. Squares stay within a double."""
 Number = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER, allow_inf_nan=False)]
@@ -81,7 +83,7 @@ class Run(_Frozen):
     """How a study is carried out."""
 
     method: Method = "sobol"
-    evaluations: int = Field(default=100, ge=1, le=1_000_000)
+    evaluations: int = Field(default=100, ge=1, le=MOST_EVALUATIONS)
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
     workers: int = Field(default=2, ge=1, le=256, description="local processes")
     scheduler: str = Field(default="", max_length=500, description="a Dask scheduler's address")
@@ -101,6 +103,12 @@ class StudyFile(_Frozen):
     run: Run = Run()
 
 
+def _whole(field: FieldInfo) -> str:
+    """What a field of a whole number takes, in words; pydantic keeps its limits as Ge and Le."""
+    least, most = field.metadata
+    return f"a whole number from {least.ge} to {most.le}"
+
+
 NUMBER_WORDS = f"from {-LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}"
 WORDS: dict[str, str] = {
     "design": 'the path of a design file, e.g. "xb1-40.toml"',
@@ -108,7 +116,7 @@ WORDS: dict[str, str] = {
     "vary.*": "{ min = …, max = … } or { values = […] }",
     "vary.*.min": "a number below max",
     "vary.*.max": "a number above min",
-    "vary.*.steps": "a whole number from 2 to 10000",
+    "vary.*.steps": _whole(VariedSpan.model_fields["steps"]),
     "vary.*.values": "a list of 1 to 10000 numbers",
     "link": "a table [link] of design keys",
     "link.*": '{ of = "design key", times = 1.0, plus = 0.0 }',
@@ -127,12 +135,12 @@ WORDS: dict[str, str] = {
     "constraint.*.max": f"a number {NUMBER_WORDS}",
     "run": "a table [run]",
     "run.method": '"grid", "sobol", "optimize" or "tolerance"',
-    "run.evaluations": "a whole number from 1 to 1000000",
-    "run.seed": "a whole number from 0 to 2147483647",
-    "run.workers": "a whole number from 1 to 256",
+    "run.evaluations": _whole(Run.model_fields["evaluations"]),
+    "run.seed": _whole(Run.model_fields["seed"]),
+    "run.workers": _whole(Run.model_fields["workers"]),
     "run.scheduler": 'the address of a Dask scheduler, e.g. "tcp://host:8786", or ""',
     "run.storage": 'a database URL, e.g. "sqlite:///study.db", or ""',
-    "run.verify": "a whole number from 0 to 100",
+    "run.verify": _whole(Run.model_fields["verify"]),
 }
 """What every key may hold, in words; `*` is a design key or a figure."""
 

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexspline.pipeline.cache import FORMAT
+from flexspline.pipeline.study.claims import Try
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import Solve, needed
 from flexspline.pipeline.study.holes import HolesEffect
-from flexspline.pipeline.study.plan import StudyPlan, from_unit, linked
-from flexspline.pipeline.study.store import ClaimedDesign, Finished, TrialStore
+from flexspline.pipeline.study.plan import StudyPlan, linked, spread
+from flexspline.pipeline.study.store import Finished, TrialStore
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.trial_tables import Values
 
@@ -69,7 +70,7 @@ class PlannedDesigns(_Asked):
     def ahead(self, width: int) -> int:
         return width
 
-    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
+    def claim(self, store: TrialStore, count: int) -> list[Try]:
         return store.claim(self.size, count, self.plan.point, self.over)
 
     def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
@@ -87,7 +88,7 @@ class SampledDesigns(_Asked):
     def ahead(self, width: int) -> int:
         return 0  # a design chosen later knows more
 
-    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
+    def claim(self, store: TrialStore, count: int) -> list[Try]:
         """One design, or none. A slot is taken first, and then given values: two processes cannot both
         have it."""
         for _ in range(ASKED_AGAIN):
@@ -117,11 +118,10 @@ class SampledDesigns(_Asked):
         """A random design that the study has not had; any, where its lists leave none."""
         random = np.random.default_rng([self.study.file.run.seed, slot])
         for _ in range(DRAWN_AGAIN):
-            unit = random.random(len(self.study.file.vary))
-            values = {
-                key: from_unit(self.study, key, float(u))
-                for key, u in zip(self.study.file.vary, unit, strict=True)
-            }
+            unit = random.random((1, len(self.study.file.vary)))
+            values = dict(
+                zip(self.study.file.vary, spread(self.study, unit)[0].tolist(), strict=True)
+            )
             if values not in had:
                 break
         return values

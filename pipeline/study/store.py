@@ -53,20 +53,10 @@ def _plainly(
 
 
 @dataclass(frozen=True)
-class ClaimedDesign:
-    """A claimed design: the trial that holds it."""
-
-    trial_id: int
-    number: int
-    slot: int
-    values: Values
-
-
-@dataclass(frozen=True)
 class Finished:
     """The outcome of a claimed design; `objectives` are for Optuna, None where the design failed."""
 
-    job: ClaimedDesign
+    job: Try
     outcome: Outcome
     objectives: list[float] | None
 
@@ -114,7 +104,7 @@ class TrialStore:
         count: int,
         values: Callable[[int], Values],
         over: Mapping[str, BaseDistribution],
-    ) -> list[ClaimedDesign]:
+    ) -> list[Try]:
         """Claim up to `count` free designs below `size`: a dead process's first, then new ones.
 
         One transaction, under the study's lock: what was read as free in it is so when it ends.
@@ -140,11 +130,11 @@ class TrialStore:
         known.held.update(ids)
         known.last_id, known.last_number = ids[-1], first + len(ids) - 1
         jobs = [
-            ClaimedDesign(at, first + i, c.slot, v)
+            Try(at, first + i, c, v, finished=False)
             for i, (at, c, v) in enumerate(zip(ids, claims, given, strict=True))
         ]
-        for job, one in zip(jobs, claims, strict=True):
-            known.add_try(Try(job.trial_id, job.number, one, job.values, False))
+        for job in jobs:
+            known.add_try(job)
         return jobs
 
     def tries(self, slot: int) -> list[Try]:
@@ -158,16 +148,16 @@ class TrialStore:
         return tried + [r.values for r in known.rows() if r.slot != but]
 
     @_plainly
-    def suggested(self, job: ClaimedDesign, over: Mapping[str, BaseDistribution]) -> ClaimedDesign:
+    def suggested(self, job: Try, over: Mapping[str, BaseDistribution]) -> Try:
         """Return a claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
         from optuna.trial import Trial
 
         self.trials.get_trials(deepcopy=False)  # Optuna's cache hears of the trial
         trial = Trial(self.trials, job.trial_id)
         values = {key: _sampled(trial, key, span) for key, span in over.items()}
-        known = self._known.tries[job.slot][job.trial_id]
-        self._known.add_try(replace(known, values=values))
-        return replace(job, values=values)
+        valued = replace(job, values=values)
+        self._known.add_try(valued)
+        return valued
 
     @_plainly
     def finish(self, finished: Sequence[Finished]) -> None:
@@ -204,7 +194,7 @@ class TrialStore:
         with suppress(UpdateFinishedTrialError):  # another process did so just now
             self.trials.tell(number, values, state=state, skip_if_finished=True)
 
-    def give_up(self, job: ClaimedDesign) -> None:
+    def give_up(self, job: Try) -> None:
         """Close a claimed trial without a row: its design is free again."""
         self.tell(job.number, None)
         self._known.held.discard(job.trial_id)

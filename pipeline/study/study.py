@@ -9,7 +9,7 @@ from functools import cached_property
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import location_of, value_at
-from flexspline.geometry.schema import node_at
+from flexspline.geometry.schema import ends_of, node_at
 from flexspline.pipeline.study.figures import TOTAL, USUAL_FIGURES
 from flexspline.pipeline.study.schema import StudyFile
 
@@ -29,7 +29,14 @@ class Study:
     @cached_property
     def whole(self) -> frozenset[str]:
         """Keys that hold whole numbers."""
-        return frozenset(k for k in self.file.vary if is_whole(self.design, k))
+        kind = self.design.flexspline.kind
+        nodes = {key: node_at(location_of(key), kind) for key in self.file.vary}
+        return frozenset(key for key, node in nodes.items() if node["type"] == "integer")
+
+    def range_of(self, key: str) -> tuple[float, float]:
+        """Least and largest value that a design file may have at a key of a number."""
+        least, *_, most = ends_of(location_of(key), self.design.flexspline.kind)
+        return least, most
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -58,7 +65,12 @@ class Study:
         """Whether a design has every figure asked for; what else could not be solved costs only itself."""
         return self.asked <= figures.keys()
 
+    def excesses(self, figures: Mapping[str, float]) -> list[float]:
+        """Return how far each constraint is overstepped, over its limit's size; at most 0 where it holds.
 
-def is_whole(design: Design, key: str) -> bool:
-    """Whether a design key holds a whole number."""
-    return node_at(location_of(key), design.flexspline.kind).get("type") == "integer"
+        A constraint on a figure that is missing counts as overstepped by all of its limit.
+        """
+        return [
+            limit.excess(figures[k]) / limit.size if k in figures else 1.0
+            for k, limit in self.file.constraint.items()
+        ]

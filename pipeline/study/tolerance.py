@@ -13,10 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.keys import location_of, value_at, with_values
-from flexspline.geometry.schema import node_at
+from flexspline.geometry.keys import value_at, with_values
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.plan import Listed, linked
@@ -80,8 +78,8 @@ def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
     ------
     StudyError : nothing scatters, or a tolerance reaches beyond what can be built.
     """
-    design, doubt = study.design, study.design.uncertainty
-    modulus = design.material.flexspline.youngs_modulus_GPa
+    doubt = study.design.uncertainty
+    modulus = study.design.material.flexspline.youngs_modulus_GPa
     stds = {
         MODULUS: modulus * doubt.youngs_modulus_pct / 100,
         CLEARANCE: doubt.flank_clearance_um,
@@ -95,17 +93,18 @@ def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
         half = spread_or_none.plus_minus if spread_or_none else None
         if not std and half is None:
             continue
-        inputs.append(_input(design, key, std, half))
+        inputs.append(_input(study, key, std, half))
     if not inputs:
         raise StudyError("tolerance", None, "nothing scatters: give [tolerance] or [uncertainty]")
     return tuple(inputs)
 
 
-def _input(design: Design, key: str, std: float, half: float | None) -> ScatteredInput:
-    nominal = value_at(design, key)
-    if nominal is None:
-        raise StudyError(f'tolerance."{key}"', None, "is not a number of the design file")
-    least, most = _range(design, key)
+def _input(study: Study, key: str, std: float, half: float | None) -> ScatteredInput:
+    nominal = value_at(study.design, key)
+    assert nominal is not None  # `check` has seen that
+    least, most = study.range_of(key)
+    if key == PLAY and study.design.bearing.bearing_play_model == "involute":
+        most = min(most, study.design.gear.bearing_play_limit_um)
     reach = half if half is not None else CUT_SIGMAS * std
     low, high = nominal - reach, nominal + reach
     if half is None:
@@ -113,19 +112,10 @@ def _input(design: Design, key: str, std: float, half: float | None) -> Scattere
         return ScatteredInput(key, nominal, std, low, high, True)
     for end in (low, high):
         try:
-            with_values(design, {key: end})
+            with_values(study.design, {key: end})
         except DesignError as fault:
             raise StudyError(f'tolerance."{key}".plus_minus', half, f"too wide: {fault}") from None
     return ScatteredInput(key, nominal, half / 3**0.5, low, high, False)
-
-
-def _range(design: Design, key: str) -> tuple[float, float]:
-    """What the design file allows at a key, and for the play where its model ends."""
-    node = node_at(location_of(key), design.flexspline.kind)
-    low, high = float(node["minimum"]), float(node["maximum"])
-    if key == PLAY and design.bearing.bearing_play_model == "involute":
-        high = min(high, design.gear.bearing_play_limit_um)
-    return low, high
 
 
 def base_size(study: Study, k: int) -> int:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 GROUND: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5}
 """Frame of words that a line may pass behind."""
+EDGE_PX = 8.0
+"""Left free at the edge of a sheet."""
 
 
 def angle_title(name: str) -> str:
@@ -41,12 +43,12 @@ def fit(texts: Sequence[Text], width_px: float) -> None:
             text.set_fontsize(float(text.get_fontsize()) * width_px / widest)
 
 
-def keep_inside(axes: Axes, gap_px: float = 8.0) -> None:
+def keep_inside(axes: Axes) -> None:
     """Move the axes' left side inwards until the numbers and the label beside it are on the sheet."""
     figure, taken = axes.get_figure(), axes.get_tightbbox()
     if figure is None or taken is None:
         return
-    outside = gap_px - taken.x0
+    outside = EDGE_PX - taken.x0
     if outside > 0:
         place, share = axes.get_position(), outside / figure.bbox.width
         axes.set_position((place.x0 + share, place.y0, place.width - share, place.height))

@@ -23,7 +23,7 @@ from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import Shot, View, shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
 from flexspline.results.renders.surface import crease_edges, lines, skin
-from flexspline.results.renders.turntable import Drawn, ViewWords, turning
+from flexspline.results.renders.turntable import Drawn, turning
 from flexspline.results.style import ACCENT
 
 _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))
@@ -50,13 +50,7 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
         layers = stress_layers(seen.points, scene.whole.mises, seen.shown, field.peak, line)
         return shoot([*layers, wires(before, ACCENT, 1.3 * line)], seen.view, frame)
 
-    text = scene.words
-    write_sheet(
-        path,
-        shot(scene.main, MAIN, 2.4),
-        shot(scene.inset, INSET, 2.0),
-        Sheet(text.title, text.subtitle, "along the axis", text.note, text.bar, text.mark),
-    )
+    write_sheet(path, shot(scene.main, MAIN, 2.4), shot(scene.inset, INSET, 2.0), scene.sheet)
 
 
 def turning_ellipse(field: SolidField, amplitude_mm: float) -> bytes:
@@ -66,7 +60,7 @@ def turning_ellipse(field: SolidField, amplitude_mm: float) -> bytes:
     drawn = Drawn(
         main.points, whole.mises, main.shown, main.view, field.peak, scene.before, whole.nodes
     )
-    return turning(drawn, scene.words)
+    return turning(drawn, scene.sheet)
 
 
 def write_turning_ellipse(path: Path, field: SolidField, amplitude_mm: float) -> None:
@@ -76,13 +70,13 @@ def write_turning_ellipse(path: Path, field: SolidField, amplitude_mm: float) ->
 
 @dataclass(frozen=True)
 class _Scene:
-    """Both views, the edges (k, 3) that move, and the words."""
+    """Both views, the edges (k, 3) that move, and the sheet around them."""
 
     whole: WholePart
     main: Seen
     inset: Seen
     before: np.ndarray
-    words: ViewWords
+    sheet: Sheet
 
 
 @remembered(1)
@@ -97,15 +91,16 @@ def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
     main, mark = _facing_peak(field, whole.nodes, inset)
     moving = np.linalg.norm(shift, axis=1)[edges].max(axis=1) > _STILL * size
     beyond = goes_beyond(field.peak, shown, whole.mises)
-    text = ViewWords(
+    sheet = Sheet(
         title="Flexspline on the wave generator: stress",
         subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
+        inset_title="along the axis",
         note=f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
         + stress_note(field.peak, beyond),
         bar=stress_bar(field.peak, beyond),
         mark=mark,
     )
-    return _Scene(whole, main, inset, edges[moving], text)
+    return _Scene(whole, main, inset, edges[moving], sheet)
 
 
 def _facing_peak(field: SolidField, nodes: np.ndarray, inset: Seen) -> tuple[Seen, Mark]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexspline.fea.types import StressPeak
+from flexspline.results.numbers import round_number
 from flexspline.results.quantities import quantity
 from flexspline.results.renders.scene import Actor, View
 from flexspline.results.renders.sheet import Bar, Mark
@@ -114,10 +114,8 @@ def peak_mark(
 
 
 def magnification(largest_mm: float, size_mm: float) -> float:
-    """1, 2 or 5 times a power of ten that brings the largest displacement near 1/10 of the part."""
-    wanted = size_mm / 10 / largest_mm
-    decade = 10.0 ** floor(log10(wanted))
-    return max(s * decade for s in (1.0, 2.0, 5.0) if s * decade <= wanted)
+    """A round number that brings the largest displacement near 1/10 of the part."""
+    return round_number(size_mm / 10 / largest_mm)
 
 
 def sector_words(sector_deg: float) -> str:

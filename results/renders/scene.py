@@ -18,6 +18,9 @@ OVERSAMPLING = 2
 """Rendered larger and averaged down: smooth lines on every driver. Samples within its pixels (VTK's and
 pyvista's own anti-aliasing) would double the time where the processor draws, and show in no print."""
 
+MARGIN_SHARE = 0.03
+"""Of a picture's width and height, left free at each side."""
+
 
 @dataclass(frozen=True)
 class View:
@@ -64,8 +67,8 @@ class Shot:
         return width / 2 + float(right), height / 2 - float(up)
 
 
-def shoot(layers: Sequence[Actor], view: View, size: tuple[int, int], margin: float = 0.03) -> Shot:
-    """Draw the layers so that they fill `size` (width, height) pixels up to the margin.
+def shoot(layers: Sequence[Actor], view: View, size: tuple[int, int]) -> Shot:
+    """Draw the layers so that they fill `size` (width, height) pixels up to a margin.
 
     Raises
     ------
@@ -79,7 +82,7 @@ def shoot(layers: Sequence[Actor], view: View, size: tuple[int, int], margin: fl
     low, high = seen.min(axis=0), seen.max(axis=0)
     centre = axes.T @ ((low + high) / 2)
     width, height = size
-    mm_per_pixel = float(max((high - low)[:2] / np.array(size))) / (1 - 2 * margin)
+    mm_per_pixel = float(max((high - low)[:2] / np.array(size))) / (1 - 2 * MARGIN_SHARE)
     plotter = pv.Plotter(
         off_screen=True,
         window_size=(width * OVERSAMPLING, height * OVERSAMPLING),

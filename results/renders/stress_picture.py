@@ -20,7 +20,7 @@ from flexspline.results.renders.remembered import remembered
 from flexspline.results.renders.scene import shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.surface import opening, skin
-from flexspline.results.renders.turntable import Drawn, ViewWords, turning
+from flexspline.results.renders.turntable import Drawn, turning
 
 
 def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm: float) -> None:
@@ -32,7 +32,6 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
     part_name : opens the title ("Flexspline", "Output shaft").
     """
     whole, main, inset = _seen(field)
-    text = _view_words(field, whole, main, inset, part_name, torque_Nm)
     write_sheet(
         path,
         shoot(stress_layers(main.points, whole.mises, main.shown, field.peak), main.view, MAIN),
@@ -41,7 +40,7 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
             inset.view,
             INSET,
         ),
-        Sheet(text.title, text.subtitle, "from below", text.note, text.bar, text.mark),
+        _sheet(field, whole, main, inset, part_name, torque_Nm),
     )
 
 
@@ -49,7 +48,7 @@ def turning_torque_stress(field: SolidField, part_name: str, torque_Nm: float) -
     """The same as a view that turns in a browser (`results.renders.turntable`)."""
     whole, main, inset = _seen(field)
     drawn = Drawn(whole.nodes, whole.mises, main.shown, main.view, field.peak)
-    return turning(drawn, _view_words(field, whole, main, inset, part_name, torque_Nm))
+    return turning(drawn, _sheet(field, whole, main, inset, part_name, torque_Nm))
 
 
 def write_turning_torque_stress(
@@ -71,13 +70,14 @@ def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
 
 
 @remembered(1)
-def _view_words(
+def _sheet(
     field: SolidField, whole: WholePart, main: Seen, inset: Seen, part_name: str, torque_Nm: float
-) -> ViewWords:
+) -> Sheet:
     beyond = goes_beyond(field.peak, main.shown, whole.mises)
-    return ViewWords(
+    return Sheet(
         title=f"{part_name}: stress under load torque",
         subtitle=f"von Mises stress, torque {torque_Nm:.4g} N·m; cut open, not deformed",
+        inset_title="from below",
         note=stress_note(field.peak, beyond),
         bar=stress_bar(field.peak, beyond),
         mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),

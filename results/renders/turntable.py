@@ -13,7 +13,7 @@ import numpy as np
 from flexspline.fea.types import StressPeak
 from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.scene import View
-from flexspline.results.renders.sheet import Bar, Mark, ticks
+from flexspline.results.renders.sheet import Sheet, ticks
 from flexspline.results.renders.surface import Skin, crease_edges, surface
 from flexspline.results.style import ACCENT, INK
 
@@ -48,37 +48,29 @@ class Drawn:
     before_points: np.ndarray | None = None
 
 
-@dataclass(frozen=True)
-class ViewWords:
-    """The words around a view."""
-
-    title: str
-    subtitle: str
-    note: str
-    bar: Bar
-    mark: Mark
-
-
-def turning(drawn: Drawn, text: ViewWords) -> bytes:
-    """The view as JSON: its words, scale and mark, and the scene in base64."""
+def turning(drawn: Drawn, sheet: Sheet) -> bytes:
+    """The view as JSON: words, scale and mark of the picture's `sheet`, and the scene in base64."""
+    bar, mark = sheet.bar, sheet.mark
+    assert bar is not None
+    assert mark is not None
     facets = drawn.shown.facets
     mesh = surface(drawn.points, facets, len(facets) <= COARSE_BEYOND)
     node, skin = np.asarray(mesh.point_data["node"]), np.asarray(mesh.points)
-    inside, labels = ticks(text.bar.high)
-    marks = [*zip(inside, labels, strict=True), (text.bar.high, text.bar.high_text)]
-    nearest = int(np.argmin(((skin - text.mark.at_mm) ** 2).sum(axis=1)))
+    inside, labels = ticks(bar.high)
+    marks = [*zip(inside, labels, strict=True), (bar.high, bar.high_text)]
+    nearest = int(np.argmin(((skin - mark.at_mm) ** 2).sum(axis=1)))
     view = {
-        "title": text.title,
-        "subtitle": text.subtitle,
-        "note": text.note.replace("\n", " "),
+        "title": sheet.title,
+        "subtitle": sheet.subtitle,
+        "note": sheet.note.replace("\n", " "),
         "bar": {
-            "label": text.bar.label,
-            "beyond": text.bar.beyond,
-            "ticks": [{"at": round(v / text.bar.high, 4), "text": t} for v, t in marks],
+            "label": bar.label,
+            "beyond": bar.beyond,
+            "ticks": [{"at": round(v / bar.high, 4), "text": t} for v, t in marks],
         },
         "mark": {
-            "text": text.mark.text.replace("\n(hidden)", ""),
-            "at": _rounded(text.mark.at_mm),
+            "text": mark.text.replace("\n(hidden)", ""),
+            "at": _rounded(mark.at_mm),
             "normal": _rounded(mesh.point_data["Normals"][nearest]),
         },
         "camera": _camera(drawn.points[np.unique(facets)], drawn.view),

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 from flexspline.results.doubt import spread_sentence
 from flexspline.results.quantities import quantity
-from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
     Block,
@@ -69,22 +68,26 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         (_DELTA, ("text", "="), _SHAFT, plus, flexspline, plus, _PLAY),
         f"Δ_bl = 2 T_L / K_e + 2 T_L / {K_b} + 2 (j_bn0 + j′) / (m z_1 cos α)",
     )
-    rows, formulas = tables.budget(content), _terms(content)
+    total = content.backlash.total_arcsec
+    formulas, rows = _terms(content), []
+    for term, value in {**content.backlash.terms_arcsec, "total": total}.items():
+        entry, share = quantity(f"backlash_arcsec.{term}"), f"{100 * value / total:.0f} %"
+        rows.append((entry.name, formulas[term], entry.text(value), entry.unit, share))
     yield Table(
         columns=(
             Column("Term", grow=1), Column("Formula"), Column("Value", "right"), Column("Unit"),
             Column("Share", "right"),
         ),
-        rows=tuple((b["name"], formulas[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
+        rows=tuple(rows),
         caption=f"The four terms and their sum; {spread_sentence(content.backlash)}.",
         strong=len(rows) - 1,
     )  # fmt: skip
     if content.extended is not None:
-        model, total = content.extended.model, content.extended.total_arcsec
-        more, text = total - content.backlash.total_arcsec, quantity(EXTENDED).text
+        model, extended = content.extended.model, content.extended.total_arcsec
+        more, text = extended - total, quantity(EXTENDED).text
         yield Paragraph(
             plain(
-                f"With the extended model in {model} the backlash is {text(total)} arcsec: the measured "
+                f"With the extended model in {model} the backlash is {text(extended)} arcsec: the measured "
                 f"stiffness and gap, and the identified causes, {'add' if more >= 0 else 'subtract'} "
                 f"{text(abs(more))} arcsec. No standard deviation is computed for this sum."
             )

@@ -41,25 +41,20 @@ def report_content(
     attached: tuple[Attachment, ...],
 ) -> ReportContent:
     """What a run's report says, before any layout."""
-    stiffnesses, design = result.stiffnesses, result.design
+    stiffnesses = result.stiffnesses
     peaks = {name: solved.peak for name, solved in result.fields.items()}
     return ReportContent(
-        design=design,
+        design=result.design,
         version=__version__,
-        stiffnesses=stiffnesses.solved,
-        K_series_Nm_per_rad=stiffnesses.series_Nm_per_rad(design),
+        stiffnesses=stiffnesses,
         backlash=result.backlash,
         pictures=pictures.paths,
         missing_pictures=pictures.missing,
         flexspline_peak=peaks.get("flexspline_torque"),
         shaft_peak=peaks.get("shaft_torque"),
         wave_generator_peak=peaks.get("wave_generator", stiffnesses.wave_generator_peak),
-        half_seat_peak=stiffnesses.half_seat_peak,
-        full_seat_peak=stiffnesses.full_seat_peak,
         linear_limit=result.linear_limit,
-        ring=stiffnesses.ring,
         gear=result.gear,
-        gear_missing=str(stiffnesses.missing.get("gear", "")),
         warnings=all_warnings(result),
         stage_seconds=result.stage_seconds,
         versions=library_versions(),

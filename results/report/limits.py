@@ -117,7 +117,8 @@ def fatigue(content: ReportContent) -> str:
 
 def _ellipse(content: ReportContent) -> str:
     """What the ellipse assumes of the seat, and how the stress moves with its width."""
-    design, half = content.design, content.half_seat_peak
+    design, found = content.design, content.stiffnesses
+    half = found.half_seat_peak
     width = design.flexspline.ring_width_mm
     text = (
         f"The seat follows a given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, without friction and "
@@ -132,10 +133,10 @@ def _ellipse(content: ReportContent) -> str:
     if half is None:
         return text
     stress = quantity("wave_generator_peak_half_seat_mises_MPa")
-    full = content.full_seat_peak or content.wave_generator_peak
+    full = found.full_seat_peak or content.wave_generator_peak
     change = 100 * (half.mises_MPa / full.mises_MPa - 1)
     digits = 0 if abs(change) >= 1 else 1
-    with_holes = content.full_seat_peak is not None
+    with_holes = found.full_seat_peak is not None
     instead = f" instead of {stress.with_unit(full.mises_MPa)}" if with_holes else ""
     border = f", {BORDER}" if half.at_excluded_border else ""
     return (
@@ -183,7 +184,7 @@ def _beyond_flange(design: Design) -> str:
 
 
 def _teeth(content: ReportContent) -> str:
-    f, ring = content.design.flexspline, content.ring
+    f, ring = content.design.flexspline, content.stiffnesses.ring
     if ring is None:
         return (
             "Not drawn. The toothed ring is a plain ring of "

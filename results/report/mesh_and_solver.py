@@ -56,7 +56,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         yield Paragraph(sure if len(steps) > 1 else sure + plain(f" {steps[0]}"))
         if len(steps) > 1:
             yield Bullets(tuple(map(plain, steps)), small=True)
-    if not any(len(s.levels) > 1 for s in (content.K_b, content.K_e)):
+    if not any(len(s.levels) > 1 for s in (content.stiffnesses.K_b, content.stiffnesses.K_e)):
         yield Paragraph(
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
         )
@@ -76,7 +76,7 @@ def mesh_and_solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
 def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
     """A mesh's caption: which of the part's stiffnesses, whose names begin alike, are not from that mesh."""
     caption = plain(f"Mesh of the {part} and its named surfaces.")
-    solved = {name: s for name, s in content.stiffnesses.items() if name.startswith(letter)}
+    solved = {name: s for name, s in content.stiffnesses.solved.items() if name.startswith(letter)}
     turned = [name for name, s in solved.items() if s.model == "axisymmetric"]
     if not turned:
         return caption

@@ -27,7 +27,7 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.mesh_and_solver import mesh_and_solver
-from flexspline.results.report.picture_blocks import shown, shown_charts
+from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import (
     NBSP,
     Words,
@@ -112,7 +112,7 @@ def _task(content: ReportContent) -> Iterable[Block]:
         + symbol("T_L")
         + plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m, wave generator locked:")
     )
-    yield Facts(tuple((name, value) for name, value in tables.design_facts(content.design)))
+    yield Facts(tables.design_facts(content.design))
 
 
 def _answer(content: ReportContent) -> Iterable[Block]:
@@ -142,7 +142,7 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     )  # fmt: skip
     if fatigue := limits.fatigue(content):
         yield Paragraph(fatigue)
-    if any(name.startswith("K_b_lobes") for name in content.stiffnesses):
+    if any(name.startswith("K_b_lobes") for name in content.stiffnesses.solved):
         yield Paragraph(_which(content.design.solver.load_case))
     if count := len(content.warnings):
         warnings = "warning" if count == 1 else f"{count} warnings"
@@ -188,7 +188,6 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Picture("shaft_torque", plain("Output shaft") + under + at, view="shaft_torque"),
         ),
         *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
-        *shown_charts(content, roomy, "stress"),
     ]
     if pictures:
         yield Heading("Stress and deformation")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
+from flexspline.pipeline.stiffnesses import series_bounds_Nm_per_rad
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import as_stated, spread_text
 from flexspline.results.limit_words import beside_figure, stiffness_notes
@@ -25,19 +28,16 @@ def answers(content: ReportContent) -> list[PrintedRow]:
     """Every answer with its symbol, unit and bounds."""
     rows = [_backlash_row(content)]
     series = quantity("K_series_Nm_per_rad")
-    low, high = content.K_series_bounds_Nm_per_rad
-    case = content.design.solver.load_case
-    both = content.K_b_in_sum.guaranteed and content.K_e.guaranteed
+    found, case = content.stiffnesses, content.design.solver.load_case
+    K_b, K_e = found.in_sum(content.design), found.K_e
+    bounds = series.range_text(*series_bounds_Nm_per_rad(K_b, K_e))
+    both = K_b.guaranteed and K_e.guaranteed
     rows.append(
-        _row(
-            series,
-            content.K_series_Nm_per_rad,
-            series.range_text(low, high),
-        )
+        _row(series, found.series_Nm_per_rad(content.design), bounds)
         | {"note": f"with {content.sum_symbol} (load case “{case}”)", "kind": bounds_kind(both)}
     )
     notes = stiffness_notes(content.design)
-    for name, stiffness in content.stiffnesses.items():
+    for name, stiffness in found.solved.items():
         entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         row = _row(entry, stiffness.K_Nm_per_rad, bounds)
@@ -46,21 +46,10 @@ def answers(content: ReportContent) -> list[PrintedRow]:
     return rows + _stress_rows(content)
 
 
-def budget(content: ReportContent) -> list[PrintedRow]:
-    """The four terms and their sum: value and share."""
-    b = content.backlash
-    rows = []
-    for term, value in {**b.terms_arcsec, "total": b.total_arcsec}.items():
-        entry = quantity(f"backlash_arcsec.{term}")
-        share = f"{100 * value / b.total_arcsec:.0f} %"
-        rows.append(_row(entry, value, "") | {"share": share, "term": term})
-    return rows
-
-
 def solves(content: ReportContent) -> list[PrintedRow]:
     """How each stiffness was solved: model, piece, size, checks."""
     rows = []
-    for name, s in content.stiffnesses.items():
+    for name, s in content.stiffnesses.solved.items():
         last = s.levels[-1]
         tolerance_pct = content.design.solver.tolerance_pct
         half, check = 100 * s.half_width, last.K_check_Nm_per_rad
@@ -85,7 +74,7 @@ def solves(content: ReportContent) -> list[PrintedRow]:
     return rows
 
 
-def design_facts(design: Design) -> list[list[str]]:
+def design_facts(design: Design) -> tuple[tuple[str, str], ...]:
     """Pairs of name and value that say what was asked about."""
     f, gear = design.flexspline, design.gear
     segments, doubt = design.shaft.segment, design.uncertainty
@@ -96,31 +85,31 @@ def design_facts(design: Design) -> list[list[str]]:
         f"{f.kind}; inner diameter {f.inner_diameter_mm:g}, wall {f.wall_thickness_mm:g}, "
         f"length {f.length_mm:g}, diaphragm {f.diaphragm_thickness_mm:g} mm"
     )
-    return [
-        ["Flexspline", f"{size}; {_end(f)}; {_holes(f.bolt_count)}"],
-        [
+    return (
+        ("Flexspline", f"{size}; {_end(f)}; {_holes(f.bolt_count)}"),
+        (
             "Toothed ring",
             f"{f.ring_thickness_mm:g} mm thick under the roots, {f.ring_width_mm:g} mm wide",
-        ],
-        [
+        ),
+        (
             "Output shaft",
             f"length {grouped(design.shaft.length, 1)} mm in {len(segments)} segments, outer "
             f"diameters {', '.join(f'{s.outer_diameter_mm:g}' for s in segments[:6])}"
             f"{', …' if len(segments) > 6 else ''} mm; {_holes(design.shaft.bolt_count)}"
             f"{'; keyway' if design.shaft.keyway else ''}",
-        ],
+        ),
         *_materials(design),
-        ["Mass", weights(design)],
-        [
+        ("Mass", weights(design)),
+        (
             "Gear",
             f"module {gear.module_mm:g} mm, {gear.teeth_flexspline}/{gear.teeth_circular_spline} "
             f"teeth, ratio {ratio(design)}, pressure angle {gear.pressure_angle_deg:g}°",
-        ],
-        [
+        ),
+        (
             "Clearances",
             f"flanks {flanks} normal, wave-generator bearing {play} radial{spread}",
-        ],
-    ]
+        ),
+    )
 
 
 def _backlash_row(content: ReportContent) -> PrintedRow:
@@ -146,8 +135,8 @@ def _stress_rows(content: ReportContent) -> list[PrintedRow]:
                 remarks.append(border_note(peak.exclusion_mm, peak.mises_at_twice_MPa))
             if not (passed and peak.at_excluded_border):
                 remarks.append(limit_note(peak, content.design.part(part).material))
-            if entry is wave and content.half_seat_peak is not None:
-                half, full = content.half_seat_peak, content.full_seat_peak
+            half, full = content.stiffnesses.half_seat_peak, content.stiffnesses.full_seat_peak
+            if entry is wave and half is not None:
                 words = half_seat_words(
                     half.mises_MPa, half.at_excluded_border, full.mises_MPa if full else None
                 )
@@ -186,22 +175,18 @@ def _holes(count: int) -> str:
     return f"{count} bolt holes" if count else "no bolt holes"
 
 
-def _materials(design: Design) -> list[list[str]]:
+def _materials(design: Design) -> Iterator[tuple[str, str]]:
     of = design.material
     flexspline, shaft = of.flexspline, design.part("shaft").material
-    rows = (
-        [["Material, both parts", _material(flexspline)]]
-        if flexspline == shaft
-        else [
-            ["Material, flexspline", _material(flexspline)],
-            ["Material, shaft", _material(shaft)],
-        ]
-    )
+    if flexspline == shaft:
+        yield "Material, both parts", _material(flexspline)
+    else:
+        yield "Material, flexspline", _material(flexspline)
+        yield "Material, shaft", _material(shaft)
     if of.circular_spline:
-        rows.append(["Material, circular spline", _elastic(of.circular_spline)])
+        yield "Material, circular spline", _elastic(of.circular_spline)
     if of.bearing:
-        rows.append(["Material, races and balls", _elastic(of.bearing)])
-    return rows
+        yield "Material, races and balls", _elastic(of.bearing)
 
 
 def _elastic(m: ElasticMaterial) -> str:

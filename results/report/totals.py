@@ -18,12 +18,11 @@ _FIRST = quantity("K1_Nm_per_rad")
 
 def totals_and_terms(content: ReportContent) -> Words:
     """The series stiffness, the backlash sum and, where it was found, K1 of the whole gear."""
+    K = content.stiffnesses.series_Nm_per_rad(content.design)
     text = (
         bold("Totals and terms. ")
         + symbol(_SERIES.symbol)
-        + plain(
-            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} includes only flexspline and shaft (1/"
-        )
+        + plain(f" = {_SERIES.with_unit(K)} includes only flexspline and shaft (1/")
         + symbol(_SERIES.symbol)
         + worded(f" = 1/{content.sum_symbol} + 1/K_e); the backlash of ")
         + plain(

@@ -31,7 +31,8 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield Heading("The whole gear", "gear")
     curve = content.gear
     if curve is None:
-        yield Callout("amber", text=bold("Not computed: ") + plain(f"{content.gear_missing}."))
+        why = content.stiffnesses.missing["gear"]
+        yield Callout("amber", text=bold("Not computed: ") + plain(f"{why}."))
         return
     K1, K2, K3 = (symbol(quantity(f"K{n}_Nm_per_rad").symbol) for n in (1, 2, 3))
     yield Paragraph(

@@ -26,9 +26,16 @@ from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
 from flexspline.results.limit_words import load_beyond
 from flexspline.results.numbers import figures_text
-from flexspline.results.peaks import BORDER, WITHOUT_HOLES, half_seat_words, marked
+from flexspline.results.peaks import (
+    BORDER,
+    WITHOUT_HOLES,
+    at_border,
+    half_seat_words,
+    marked,
+    tabled_peak,
+)
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
-from flexspline.results.records import backlash_record, peak_of
+from flexspline.results.records import backlash_record
 from flexspline.results.style import PALETTE
 
 STIFFNESSES = (*FIGURES, "K_series")
@@ -155,7 +162,7 @@ def _peak(name: str, figures: ComputedFigures, design: Design) -> Message:
     r, z = float(np.hypot(*figures[f"{name}_at_mm"][:2])), figures[f"{name}_at_mm"][2]
     row = figure(key, figures[key]) | {"at": f"at r = {r:.2f}, z = {z:.2f} mm"}
     row["rough"] = bool(figures.get(f"{name}_rough"))
-    peak = peak_of(name, figures)
+    peak = tabled_peak(name, figures)
     if mark := marked(figures, key):
         row |= {"more": mark, "limit": BORDER}
     share = share_of_limit(peak, design.part(PART_OF[name]).material)
@@ -165,8 +172,8 @@ def _peak(name: str, figures: ComputedFigures, design: Design) -> Message:
     row["over"] = any(limits_passed(design, {name: peak}))
     half = f"{name}_half_seat_mises_MPa"
     if half in figures:
-        border = bool(figures.get(f"{name}_half_seat_at_excluded_border"))
-        narrow = half_seat_words(figures[half], border, figures.get(WITHOUT_HOLES), "on")
+        border, whole = at_border(half, figures), figures.get(WITHOUT_HOLES)
+        narrow = half_seat_words(figures[half], border, whole, "on")
         row["more"] = "; ".join(filter(None, [row.get("more"), narrow]))
     return row
 

@@ -6,7 +6,7 @@ All of it comes from the schema; the page has no list of keys of its own.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import floor, log10
+from math import floor
 from types import MappingProxyType
 from typing import Any
 
@@ -14,7 +14,9 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from
+from flexspline.geometry.ranges import is_number
 from flexspline.geometry.schema import Location, SchemaNode, dotted, key_words, node_at
+from flexspline.results.numbers import round_number
 from flexspline.results.sentences import capital
 
 GROUPS: tuple[tuple[str, Location], ...] = (
@@ -89,7 +91,7 @@ def _group(
     """Nothing for a table that the design leaves out; `usual`: where sliders of absent values stand."""
     if table is None:
         return
-    scale = max((float(v) for v in table.values() if _is_number(v)), default=1.0)
+    scale = max((float(v) for v in table.values() if is_number(v)), default=1.0)
     entries = [
         _entry((*location, key), node_at((*location, key), kind), table.get(key), scale, usual)
         for key in node_at(location, kind).get("properties", {})
@@ -142,7 +144,7 @@ def slider(
     low, high = (
         (value * (1 - SLIDER_SHARE), value * (1 + SLIDER_SHARE)) if value else (0.0, scale / 10)
     )
-    step = _round_step((high - low) / SLIDER_PLACES)
+    step = round_number((high - low) / SLIDER_PLACES)
     if whole:
         # teeth differ by an even number between the gears: steps of two keep it so
         step = 2.0 if key.startswith("teeth") else max(1.0, float(round(step)))
@@ -152,17 +154,7 @@ def slider(
     return _tidy(low, step), _tidy(min(high, most), step), step
 
 
-def _round_step(step: float) -> float:
-    """1, 2 or 5 times a power of ten, not above `step`, but for rounding."""
-    decade = 10.0 ** floor(log10(step))
-    return float(f"{max(s * decade for s in (1.0, 2.0, 5.0) if s * decade <= 1.0001 * step):.1g}")
-
-
 def _tidy(value: float, step: float) -> float:
     """The multiple of the step nearest to a value, without binary dust; limits stay as they are."""
     near = float(f"{round(value / step) * step:.12g}")
     return near if near > 0 or value <= 0 else value
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

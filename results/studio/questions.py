@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
@@ -57,8 +58,8 @@ def _torsion(design: Design) -> Answer:
     return bounded_record("K_b", K_b) | bounded_record("K_e", K_e)
 
 
-def _rim(name: str) -> Callable[[Design], Answer]:
-    return lambda design: _bounded(name, rim(design, RIM[name]), rough=False)
+def _rim(name: str, design: Design) -> Answer:
+    return _bounded(name, rim(design, RIM[name]), rough=False)
 
 
 def _bounded(name: str, stiffness: Stiffness, rough: bool) -> Answer:
@@ -72,11 +73,8 @@ def _gear(design: Design) -> Answer:
     return {"gear": {**gear_figures(curve), "line": line}}
 
 
-def _field(view: StressCase) -> Callable[[Design], Answer]:
-    def ask(design: Design) -> Answer:
-        return _solved(view, field(revolved(design), view), rough=False)
-
-    return ask
+def _field(view: StressCase, design: Design) -> Answer:
+    return _solved(view, field(revolved(design), view), rough=False)
 
 
 def _first(design: Design) -> Answer:
@@ -92,12 +90,9 @@ def _solved(view: StressCase, solved: RevolvedField, rough: bool) -> Answer:
     }
 
 
-def _profile(view: StressCase) -> Callable[[Design], Answer]:
-    def ask(design: Design) -> Answer:
-        chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
-        return {"picture": profile_message(view, profile(revolved(design), view, chord))}
-
-    return ask
+def _profile(view: StressCase, design: Design) -> Answer:
+    chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
+    return {"picture": profile_message(view, profile(revolved(design), view, chord))}
 
 
 _QUESTIONS: dict[str, Callable[[Design], Answer]] = {
@@ -105,7 +100,7 @@ _QUESTIONS: dict[str, Callable[[Design], Answer]] = {
     GEAR: _gear,
     FIRST_STRESS: _first,
     FIRST_LOBES: lambda design: _bounded("K_b_lobes", first_lobes(design), rough=True),
-    **{name: _rim(name) for name in RIM},
-    **{f"field {view}": _field(view) for view in STRESS_CASES},
-    **{f"profile {view}": _profile(view) for view in STRESS_CASES},
+    **{name: partial(_rim, name) for name in RIM},
+    **{f"field {view}": partial(_field, view) for view in STRESS_CASES},
+    **{f"profile {view}": partial(_profile, view) for view in STRESS_CASES},
 }

@@ -32,13 +32,16 @@ class BestStress:
         return {VIEW: self.view} if self.view is not None else {}
 
 
+NOTHING_DRAWN = BestStress()
+
+
 def draw_best_stress(folder: Path, best: BestField | None) -> BestStress:
     """Draw both in a process of their own, the picture into `folder`, whole or not at all.
 
     A picture that an earlier run left and that cannot be drawn now is removed.
     """
     if best is None:
-        return BestStress()
+        return NOTHING_DRAWN
     path = folder / BEST_STRESS
     picture: Path | None = None
     with DrawingProcess() as process:

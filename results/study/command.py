@@ -61,13 +61,14 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities
+        from flexspline.results.atomic import write_bytes
         from flexspline.results.output_folder import folder_of
         from flexspline.results.records import as_json
-        from flexspline.results.study.sensitivity import lines, record, write_sensitivity
+        from flexspline.results.study.sensitivity import lines, record
 
         gear, folder = load_design(design), folder_of(design, out, (SENSITIVITY,))
         slopes = sensitivities(gear, tell)
         content = record(gear, slopes)
         tell_all(content["warnings"])
-        write_sensitivity(folder, content)
+        write_bytes(folder / SENSITIVITY, (as_json(content) + "\n").encode())
         show(as_json(content) if json else "\n".join(lines(gear, slopes)), json)

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.peaks import BORDER, MEANING, at_border
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
-from flexspline.results.study.labels import LISTED_DESIGNS, at_border, entry
+from flexspline.results.study.labels import LISTED_DESIGNS, entry
 from flexspline.results.study.unbeaten import start_breaks
 
 MARK = "†"

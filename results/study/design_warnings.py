@@ -9,12 +9,13 @@ from itertools import chain
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.first_face import held_beyond_flange, is_too_large, too_large_line
-from flexspline.pipeline.stress_limits import PART_OF, Peak, TabledPeak, limits_passed
+from flexspline.pipeline.stress_limits import PART_OF, Peak, limits_passed
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.limit_words import passed_line
+from flexspline.results.peaks import tabled_peak
 from flexspline.results.study.failures import without_numbers
-from flexspline.results.study.labels import LISTED_DESIGNS, at_border
+from flexspline.results.study.labels import LISTED_DESIGNS
 
 COUNTED_DESIGNS = 10_000
 """Of which it is counted who has a warning: a design is read again in 0.12 ms, so 1.2 s; of more, none."""
@@ -92,9 +93,5 @@ def _in_how_many(count: Counter[str] | None, kind: str, result: StudyResult) -> 
 def _peaks(row: Row) -> dict[str, Peak]:
     """Those that the row has, by their names in result.json."""
     figures = row.outcome.figures
-    keys = {name: f"{name}_mises_MPa" for name in PART_OF}
-    return {
-        name: TabledPeak(figures[key], at_border(key, figures))
-        for name, key in keys.items()
-        if key in figures
-    }
+    there = (name for name in PART_OF if f"{name}_mises_MPa" in figures)
+    return {name: tabled_peak(name, figures) for name in there}

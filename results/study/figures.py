@@ -71,9 +71,7 @@ def _values(rows: tuple[Row, ...], key: str) -> np.ndarray:
 def write_pareto(path: Path, result: StudyResult) -> None:
     """The first two objectives against each other; a third is the colour."""
     first, second, *more = result.study.file.objective
-    feasible = {r.slot for r in result.feasible}
-    out = tuple(r for r in result.built if r.slot not in feasible)
-    front = result.pareto
+    out, front = result.not_allowed, result.pareto
     with styled():
         figure = new_figure(8.0, 5.0)
         axes = figure.add_axes((0.11, 0.22, 0.72 if more else 0.86, 0.68))
@@ -185,9 +183,7 @@ def write_convergence(path: Path, result: StudyResult) -> None:
 
 
 def _settling(axes: Axes, result: StudyResult, key: str, sense: str) -> None:
-    feasible = {r.slot for r in result.feasible}
-    kept = tuple(r for r in result.built if r.slot in feasible)
-    out = tuple(r for r in result.built if r.slot not in feasible)
+    kept, out = result.feasible, result.not_allowed
     if out:
         axes.plot(
             [r.slot for r in out], _values(out, key), "o", mfc="none", mec=MUTED, ms=4,

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from textwrap import fill
 from typing import Any
 
 from flexspline.geometry.schema import key_words
-from flexspline.results.peaks import BORDER
+from flexspline.results.peaks import AT_BORDER, BORDER, at_border
 from flexspline.results.quantities import BY_KEY, bounds_kind
 from flexspline.results.quantity import Quantity
 
-AT_BORDER, GUARANTEED = "_at_excluded_border", "_bounds_guaranteed"
-"""Ends of the keys of a row's marks: numbers in the store, which holds nothing else."""
+GUARANTEED = "_bounds_guaranteed"
+"""End of the key of a row's mark: a number in the store, which holds nothing else."""
 LISTED_DESIGNS = 5
 """The best ones, on the terminal and side by side in the report."""
+COLUMN_LETTERS = 15
+"""Of a name's line under a narrow column of a chart."""
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
 _UNSAID = ("flexspline", "gear", "bearing", "load", "material.flexspline")
 """Tables that a study's labels leave out."""
@@ -57,11 +60,6 @@ def _marked(text: str, key: str, figures: Mapping[str, float]) -> str:
     return f"{text} ({BORDER})" if at_border(key, figures) else text
 
 
-def at_border(key: str, figures: Mapping[str, float]) -> bool:
-    """Whether a row's figure is a peak at the border of what is left out."""
-    return bool(figures.get(f"{key.removesuffix('_mises_MPa')}{AT_BORDER}", 0.0))
-
-
 def published(figures: Mapping[str, float]) -> dict[str, Any]:
     """A row's figures as result.json has them: what bounds are in a word, marks as true or false."""
     columns: dict[str, Any] = {}
@@ -88,7 +86,7 @@ def _design_key(key: str) -> Quantity:
 
 def long_name(key: str) -> str:
     """A key in words, without unit, over two lines where it is long."""
-    return _wrapped(entry(key).name)
+    return _narrow(entry(key).name)
 
 
 def axis_label(key: str) -> str:
@@ -106,13 +104,8 @@ def in_the_table(count: int, what: str) -> str:
 def lines_of(key: str) -> str:
     """A key under a narrow column: symbol or wrapped words, the unit below."""
     q = entry(key)
-    return f"{q.mathtext if q.symbol else _wrapped(q.name)}\n{q.unit}".strip()
+    return f"{q.mathtext if q.symbol else _narrow(q.name)}\n{q.unit}".strip()
 
 
-def _wrapped(name: str, width: int = 15) -> str:
-    lines = [""]
-    for word in name.split():
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return "\n".join(lines)
+def _narrow(name: str) -> str:
+    return fill(name, COLUMN_LETTERS, break_long_words=False, break_on_hyphens=False)

@@ -17,10 +17,10 @@ from flexspline.pipeline.study.evaluate import STUDY_LOBE_WIDTH, STUDY_TORSION_W
 from flexspline.pipeline.study.figures import stiffness_keys
 from flexspline.pipeline.study.holes import HOLE_EFFECT_DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.peaks import BORDER, MEANING, at_border
 from flexspline.results.sentences import sentence
 from flexspline.results.study.design_table import MARK, marked_figures
-from flexspline.results.study.labels import LISTED_DESIGNS, at_border, entry
+from flexspline.results.study.labels import LISTED_DESIGNS, entry
 from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"
@@ -85,9 +85,7 @@ def _advice(result: StudyResult, key: str) -> str:
     """How many keep to a constraint by such a peak alone, and which figure to ask for in its place."""
     text, limit = "", result.study.file.constraint.get(key)
     if limit is not None and limit.max is not None:
-        kept = [
-            r.outcome.figures for r in result.built if limit.excess(r.outcome.figures[key]) <= 0
-        ]
+        kept = [r.outcome.figures for r in result.keeping(key)]
         if count := sum(at_border(key, figures) for figures in kept):
             text = f"; {len(kept)} designs meet this constraint, {count} of them with such a value"
     better = f"{ON_HALF_SEAT}_mises_MPa"
@@ -109,9 +107,8 @@ def unsettled(result: StudyResult) -> Iterable[str]:
     if result.study.file.run.method != "optimize":
         return
     last = (1 - LATE_SHARE) * len(result.rows)
-    for key, sense in result.study.file.objective.items():
-        sign = 1.0 if sense == "minimize" else -1.0
-        values = [(r.slot, sign * r.outcome.figures[key]) for r in result.feasible]
+    for i, key in enumerate(result.study.file.objective):
+        values = [(r.slot, result.costs(r)[i]) for r in result.feasible]
         early = min((value for slot, value in values if slot < last), default=inf)
         best = min((value for _, value in values), default=inf)
         gain = (early - best) / max(abs(best), ABOVE_ZERO) if early < inf else inf

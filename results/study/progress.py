@@ -49,13 +49,8 @@ def line(study: Study, progress: StudyProgress) -> str:
     so_far = StudyResult(study, tuple(progress.rows))
     best = () if so_far.about_scatter else so_far.pareto
     for i, key in enumerate(study.file.objective if best else ()):
-        row = best[0] if i == 0 else min(best, key=lambda r: _cost(study, key, r.outcome.figures))
+        row = min(best, key=lambda r: so_far.costs(r)[i])
         parts.append(f"best {valued(key, row.outcome.figures)}")
     if rate > 0 and done < size:
         parts.append(f"{(size - done) / rate:.0f} s left")
     return " · ".join(parts)
-
-
-def _cost(study: Study, key: str, figures: object) -> float:
-    value = float(figures[key])  # type: ignore[index]
-    return value if study.file.objective[key] == "minimize" else -value

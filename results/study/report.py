@@ -30,7 +30,7 @@ from flexspline.results.report.document import (
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, alarm, bold, plain, worded
 from flexspline.results.study.best_figure import DRAWN_DESIGNS
-from flexspline.results.study.best_stress import VIEW, BestStress
+from flexspline.results.study.best_stress import NOTHING_DRAWN, VIEW, BestStress
 from flexspline.results.study.design_table import design_table
 from flexspline.results.study.failures import LISTED_REASONS, causes, further_reasons
 from flexspline.results.study.labels import entry
@@ -74,7 +74,7 @@ def write_study_reports(
     folder: Path,
     result: StudyResult,
     pictures: Sequence[Path],
-    best: BestStress | None = None,
+    best: BestStress = NOTHING_DRAWN,
     attached: tuple[Attachment, ...] = (),
     of_designs: Sequence[str] = (),
 ) -> list[Path]:
@@ -87,10 +87,7 @@ def write_study_reports(
     ------
     ReportError : typst refused the document.
     """
-    best = best or BestStress()
-    document = study_document(
-        result, [p.name for p in pictures], attached, best.missing, of_designs, best.peak_MPa
-    )
+    document = study_document(result, [p.name for p in pictures], attached, best, of_designs)
     made = reports_of(document, {p.stem: p for p in pictures}, best.views)
     return write_together(folder, made)
 
@@ -99,12 +96,10 @@ def study_document(
     result: StudyResult,
     pictures: Sequence[str],
     attached: tuple[Attachment, ...] = (),
-    missing: str = "",
+    best: BestStress = NOTHING_DRAWN,
     of_designs: Sequence[str] = (),
-    best_peak_MPa: float | None = None,
 ) -> Document:
-    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_designs`
-    the designs' warnings, `best_peak_MPa` the peak in the best's picture."""
+    """The report; `pictures` are the names of the files drawn; the rest is as of `write_study_reports`."""
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
@@ -114,8 +109,8 @@ def study_document(
         *_verified(result),
         *((Paragraph(f"No distribution: {result.unscattered}."),) if result.unscattered else ()),
         *chain.from_iterable(scatter_section(s) for s in result.scatter),
-        *(_picture(n, result, best_peak_MPa) for n in pictures),
-        *(_not_drawn(missing, result) if missing and BEST_STRESS not in pictures else ()),
+        *(_picture(n, result, best.peak_MPa) for n in pictures),
+        *(_not_drawn(best.missing, result) if best.missing and not best.picture else ()),
         *_failures(result),
         Heading("Scope and limits"),
         Bullets(tuple(map(worded, notes(result, of_designs)))),

@@ -7,12 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Scatter
+from flexspline.pipeline.study.schema import MOST_EVALUATIONS
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
 from flexspline.results.study.gains import gain_text, gains_shown, least_gain
 from flexspline.results.study.labels import entry
-
-MOST_EVALUATIONS = 1_000_000
-"""Evaluations that a study file may ask for."""
 
 
 def scatter_section(s: Scatter) -> Iterable[Block]:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.first_face import too_large_lines
 from flexspline.pipeline.study.clearance_slopes import ClearanceSlope, clearance_slopes
 from flexspline.pipeline.study.slope import Slope
-from flexspline.results.atomic import write_bytes
-from flexspline.results.file_names import SENSITIVITY
-from flexspline.results.records import as_json, heading
+from flexspline.results.records import heading
 
 K_OF = {"flexspline": "K_b_Nm_per_rad", "shaft": "K_e_Nm_per_rad"}
 
@@ -53,11 +50,6 @@ def _entry(s: Slope) -> dict[str, Any]:
     if s.why_no_sum:
         entry["no_backlash_because"] = s.why_no_sum.words
     return entry
-
-
-def write_sensitivity(folder: Path, content: dict[str, Any]) -> None:
-    """`sensitivity.json`, whole or not at all."""
-    write_bytes(folder / SENSITIVITY, (as_json(content) + "\n").encode())
 
 
 def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:

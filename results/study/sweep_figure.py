@@ -9,8 +9,8 @@ import numpy as np
 
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
-from flexspline.results.peaks import BORDER
-from flexspline.results.study.labels import at_border, axis_label, entry, in_the_table
+from flexspline.results.peaks import BORDER, at_border
+from flexspline.results.study.labels import axis_label, entry, in_the_table
 from flexspline.results.study.why import allowed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -40,12 +40,8 @@ def is_sweep(result: StudyResult) -> bool:
 
 def swept_figures(result: StudyResult) -> tuple[str, ...]:
     """Figures over the dimension: objectives, constraints by how many designs break them, the rest."""
-    limits = result.study.file.constraint
-
-    def keeping(name: str) -> int:
-        return sum(limits[name].excess(r.outcome.figures[name]) <= 0 for r in result.built)
-
-    by_use = [*result.study.file.objective, *sorted(limits, key=keeping), *result.shown]
+    limits = sorted(result.study.file.constraint, key=lambda name: len(result.keeping(name)))
+    by_use = [*result.study.file.objective, *limits, *result.shown]
     return tuple(dict.fromkeys(by_use))
 
 

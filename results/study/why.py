@@ -45,7 +45,7 @@ def misses(result: StudyResult) -> list[str]:
     sentences = []
     for key, limit in result.study.file.constraint.items():
         q = entry(key)
-        kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
+        kept = len(result.keeping(key))
         constraint = allowed(key, limit)
         sentences.append(
             f"{q.name}: {kept} of {len(result.built)} designs meet {constraint}; the nearest to all "

@@ -16,10 +16,9 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline, OutOfTimeError, Pace
 from flexspline.fea.types import MET, Elastic, Stiffness
-from flexspline.geometry.meridian import meridian_of
 
 STEEL = Elastic(206e3, 0.3)
-OUTLINE = meridian_of(CUP)
+OUTLINE = CUP.meridian()
 FINE = 1e-5
 """A tolerance that takes many meshes."""
 SECONDS_A_MESH = 10.0

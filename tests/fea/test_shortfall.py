@@ -22,11 +22,10 @@ from flexspline.fea.solid.torsion_field import FullTorsion
 from flexspline.fea.types import Elastic, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.symmetry import sector_of
 
 STEEL = Elastic(206e3, 0.3)
-OUTLINE = meridian_of(CUP)
+OUTLINE = CUP.meridian()
 WHY = "the mesher met its time limit"
 UNREACHABLE = 1e-7
 

@@ -1,6 +1,6 @@
 """CAD volumes and patch areas of the examples against closed forms, STEP and STL round trips.
 
-Nothing here comes from `geometry.meridian`: cylinders, Pappus' fillet, numeric integration.
+Nothing here comes from `geometry.profile`: cylinders, Pappus' fillet, numeric integration.
 """
 
 from __future__ import annotations

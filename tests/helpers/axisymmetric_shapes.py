@@ -6,7 +6,6 @@ from hypothesis import strategies as st
 
 from flexspline.geometry.cup import Cup
 from flexspline.geometry.hat import Hat
-from flexspline.geometry.meridian import meridian_of, shaft_meridian
 from flexspline.geometry.outline import Meridian, Segment
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
@@ -58,18 +57,16 @@ def cups(draw: st.DrawFn) -> Meridian:
     boss = draw(st.floats(0.2, 0.7)) * inner
     bore = draw(st.sampled_from([0.0, 0.3, 0.6])) * boss
     fillet = draw(st.floats(0.1, 0.8)) * min(inner - boss, 0.2 * tube["length_mm"])
-    return meridian_of(
-        Cup(
-            kind="cup",
-            **tube,
-            diaphragm_thickness_mm=thickness,
-            boss_diameter_mm=2 * boss,
-            boss_thickness_mm=thickness + draw(st.floats(0.3, 4)),
-            bore_diameter_mm=2 * bore,
-            inner_fillet_mm=fillet,
-            outer_fillet_mm=min(fillet, 0.9 * thickness),
-        )
-    )
+    return Cup(
+        kind="cup",
+        **tube,
+        diaphragm_thickness_mm=thickness,
+        boss_diameter_mm=2 * boss,
+        boss_thickness_mm=thickness + draw(st.floats(0.3, 4)),
+        bore_diameter_mm=2 * bore,
+        inner_fillet_mm=fillet,
+        outer_fillet_mm=min(fillet, 0.9 * thickness),
+    ).meridian()
 
 
 @st.composite
@@ -79,18 +76,16 @@ def hats(draw: st.DrawFn) -> Meridian:
     thickness = draw(st.floats(0.4, 2.5))
     flange = wall * draw(st.floats(1.3, 1.8))
     fillet = draw(st.floats(0.1, 0.8)) * min(flange - wall, 0.2 * tube["length_mm"])
-    return meridian_of(
-        Hat(
-            kind="hat",
-            **tube,
-            diaphragm_thickness_mm=thickness,
-            flange_inner_diameter_mm=2 * flange,
-            flange_outer_diameter_mm=2 * flange * draw(st.floats(1.1, 1.4)),
-            flange_thickness_mm=thickness + draw(st.floats(0.3, 4)),
-            inner_fillet_mm=fillet,
-            outer_fillet_mm=min(fillet, 0.9 * thickness),
-        )
-    )
+    return Hat(
+        kind="hat",
+        **tube,
+        diaphragm_thickness_mm=thickness,
+        flange_inner_diameter_mm=2 * flange,
+        flange_outer_diameter_mm=2 * flange * draw(st.floats(1.1, 1.4)),
+        flange_thickness_mm=thickness + draw(st.floats(0.3, 4)),
+        inner_fillet_mm=fillet,
+        outer_fillet_mm=min(fillet, 0.9 * thickness),
+    ).meridian()
 
 
 @st.composite
@@ -106,9 +101,9 @@ def shafts(draw: st.DrawFn) -> Meridian:
         for _ in range(count)
     )
     grip = draw(st.floats(0.2, 0.8)) * segments[-1].length_mm
-    return shaft_meridian(
-        Shaft(segment=segments, fillet_mm=draw(st.floats(0.05, 0.45)), grip_length_mm=grip)
-    )
+    return Shaft(
+        segment=segments, fillet_mm=draw(st.floats(0.05, 0.45)), grip_length_mm=grip
+    ).meridian()
 
 
 def _tube(draw: st.DrawFn) -> dict[str, float]:

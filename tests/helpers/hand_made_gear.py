@@ -7,6 +7,7 @@ from hand_made_curve import gear_curve
 from flexspline.fea.types import MeshLevel, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.report.content import ReportContent
 
 STEEL = {"name": "34CrNiMo6", "youngs_modulus_GPa": 206.0, "poissons_ratio": 0.3}
@@ -66,12 +67,11 @@ BACKLASH = Backlash(
 
 
 def content(**changes):
-    """Report content; keyword arguments replace its fields."""
+    """Report content; keyword arguments replace its fields, or those of its stiffnesses."""
     base = ReportContent(
         design=design(),
         version="0.1.0",
-        stiffnesses={"K_b": K_B, "K_b_lobes": K_LOBES, "K_e": K_E},
-        K_series_Nm_per_rad=16687.0,
+        stiffnesses=Stiffnesses({"K_b": K_B, "K_b_lobes": K_LOBES, "K_e": K_E}),
         backlash=BACKLASH,
         flexspline_peak=StressPeak(3.218, (9.0, 0.0, 0.6), "the boss's edge", 0.4, True, 2.9),
         wave_generator_peak=StressPeak(
@@ -81,4 +81,7 @@ def content(**changes):
         gear=gear_curve(23.2, 474.0, 108.0),
         stage_seconds={"mesh of the flexspline": 5.31},
     )
-    return replace(base, **changes)
+    solved = ("half_seat_peak", "full_seat_peak", "ring", "missing")
+    of_stiffnesses = {name: changes.pop(name) for name in solved if name in changes}
+    found = replace(changes.pop("stiffnesses", base.stiffnesses), **of_stiffnesses)
+    return replace(base, stiffnesses=found, **changes)

@@ -17,7 +17,7 @@ from flexspline.pipeline import load_cases, part_stiffness, solid_torsion, torqu
 from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import FAR_BOUNDS_PCT, TOO_FAR, bounds_pct, enclosure_of
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import two_bodies
 from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -235,7 +235,7 @@ def test_a_cut_body_that_is_too_far_off_is_not_solved_finely(
     assert (bodies.cut.half_width > fine) is far
     found = enclosure_of(part, bodies)
     assert (found.shortfall.words == TOO_FAR) is far
-    finest = enclosed(part.part, lambda body: rim(body, held_rim, KNOWN_TO))
+    finest = two_bodies(part.part, lambda body: rim(body, held_rim, KNOWN_TO)).enclosure()
     assert found.bounds_Nm_per_rad == pytest.approx(
         finest.bounds_Nm_per_rad, rel=FAR_BOUNDS_PCT / 100
     )

@@ -14,7 +14,7 @@ from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.geometry.load import load_design
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
-from flexspline.pipeline.enclosure import OF_HOLES, between, enclosed
+from flexspline.pipeline.enclosure import OF_HOLES, between, two_bodies
 from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.revolved import contact, lobes, torsion
 
@@ -145,5 +145,5 @@ def test_a_long_thin_tube_is_loaded_too() -> None:
     """A wall of 1/300 of the diameter, on which scikit-fem's search for points on an edge gives up."""
     design = holed_designs(THIN + 1)[THIN]
     assert design.flexspline.inner_diameter_mm > 300 * design.flexspline.wall_thickness_mm
-    found = enclosed(design.part("flexspline"), SOLVES["K_b_lobes_contact"])
+    found = two_bodies(design.part("flexspline"), SOLVES["K_b_lobes_contact"]).enclosure()
     assert found.half_width < 2 * CHEAP

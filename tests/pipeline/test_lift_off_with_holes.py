@@ -16,7 +16,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import TOO_FAR
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import two_bodies
 from flexspline.pipeline.errors import NestingError
 from flexspline.pipeline.lift_off_with_holes import RATIO_SPREAD, by_ratio
 from flexspline.pipeline.load_cases import rim_stiffness
@@ -60,7 +60,7 @@ def test_the_interval_by_hand() -> None:
 def test_it_is_narrower_than_the_enclosure_and_within(solver: str, suite_cache: Path) -> None:
     part = model(WIDE.changed({"solver.model": solver}), suite_cache)
     found, rests_on = rim_stiffness(part, "lobes_contact"), rim_stiffness(part, "lobes")
-    bodies = enclosed(part.part, lambda body: contact(body, 0.005))
+    bodies = two_bodies(part.part, lambda body: contact(body, 0.005)).enclosure()
     assert bodies.half_width > 0.02 > found.half_width
     assert bodies.lower_Nm_per_rad <= found.lower_Nm_per_rad * 1.005  # by the bodies' own bounds
     assert found.upper_Nm_per_rad <= bodies.upper_Nm_per_rad * 1.005

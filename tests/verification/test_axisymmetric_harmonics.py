@@ -23,7 +23,6 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.cylindrical import AXIAL, RADIAL
 from flexspline.fea.types import Elastic
-from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian
 
 STEEL = Elastic(200e3, 0.3)
@@ -86,7 +85,7 @@ def test_lame_hoop_stress_at_the_bore(record):
 @pytest.mark.parametrize("wave", [Harmonic(0), Harmonic(0, torsion=True), Harmonic(1)])
 def test_rigid_motions_carry_no_energy(wave):
     """Axial shift, rotation about z, sideways shift (u_r = cos φ, u_θ = -sin φ)."""
-    model = model_of(meridian_of(MODEL_CUP), 0)
+    model = model_of(MODEL_CUP.meridian(), 0)
     r = model.space.places[:, 0]
     zero, one = np.zeros_like(r), np.ones_like(r)
     rigid = {
@@ -174,7 +173,7 @@ def test_lobe_coefficients_against_quadrature_and_parseval():
 
 def test_truncation_bound_holds():
     """What many more harmonics add stays below the bound given with few."""
-    model = model_of(meridian_of(MODEL_CUP), 1)
+    model = model_of(MODEL_CUP.meridian(), 1)
     for supported in (True, False):
         few, many = solve_lobes(model, supported, 1.0), solve_lobes(model, supported, 1e-9)
         assert len(many.energies) > len(few.energies)
@@ -189,7 +188,7 @@ def test_model_page_cup_under_lobes(record):
     A seat that may not lift off is stiffer than contact, no seat softer: the published figure of a
     shell model lies between.
     """
-    shape = meridian_of(MODEL_CUP)
+    shape = MODEL_CUP.meridian()
     even = torsional_stiffness(shape, STEEL, "mesh", 1e-3)
     supported = lobe_stiffness(shape, STEEL, True, 3e-3)
     alone = lobe_stiffness(shape, STEEL, False, 3e-3)

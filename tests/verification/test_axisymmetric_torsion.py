@@ -16,7 +16,6 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.axisymmetric.torsion_fields import bracket
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import NMM_PER_NM, Elastic
-from flexspline.geometry.meridian import meridian_of, shaft_meridian
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
@@ -107,7 +106,7 @@ def test_model_page_cup(record):
     The series counts the whole length as tube; in the solid the plate and the driven ring take
     10 mm of it, so K lies above the series.
     """
-    found = torsional_stiffness(meridian_of(MODEL_CUP), STEEL, "mesh", 1e-3)
+    found = torsional_stiffness(MODEL_CUP.meridian(), STEEL, "mesh", 1e-3)
     case, source = "Cup turned evenly, K_b", "tube and plate in series, and above"
     record(case, source, (44.7e3, 60e3), found.K_Nm_per_rad, "N·m/rad")
     assert 44.7e3 < found.lower_Nm_per_rad < found.upper_Nm_per_rad < 60e3
@@ -209,7 +208,7 @@ def test_grip_across_a_step_and_a_closed_cavity():
             for a, b, c in segments
         ),
     )
-    found = torsional_stiffness(shaft_meridian(shaft), STEEL, "grip", 1e-3)
+    found = torsional_stiffness(shaft.meridian(), STEEL, "grip", 1e-3)
     # elementary: free length of 20 mm of the hollow segment; the flange and the grip's far side
     # lengthen it by part of a diameter
     rigid = STEEL.mu * pi / 2 * (5**4 - 2.5**4) / 20 / NMM_PER_NM

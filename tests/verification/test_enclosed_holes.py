@@ -34,7 +34,7 @@ from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import revolved
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import two_bodies
 
 FINE = 2e-4
 """Of the meridian's bounds: a tenth of what the holes do to xb1-40."""
@@ -110,7 +110,7 @@ OFTEN_LIKE = ("cup, four large holes", "hat, six large holes in a thin flange")
 )
 def test_the_solid_part_lies_between(case: str, record) -> None:
     part = design_of(case).part("flexspline")
-    found = enclosed(part, exact)
+    found = two_bodies(part, exact).enclosure()
     solved, material = twisted(case), Elastic.of(part.material)
     error = energy_error(solved.mesh, solved.displacement, material).relative
     record(
@@ -166,7 +166,7 @@ def test_the_lobe_load_on_the_part_lies_between(case: str, record) -> None:
     """A load's work 2L(u) − a(u, u) is largest at the solution, so a coarse mesh gives too large a K."""
     part = design_of(case).part("flexspline")
     degrees = sector_of(part, "lobes").degrees
-    found = enclosed(part, lambda body: revolved.lobes(body, True, 0.002))
+    found = two_bodies(part, lambda body: revolved.lobes(body, True, 0.002)).enclosure()
     solved, material = lobes(model_of(case, False, degrees), True), Elastic.of(part.material)
     error = energy_error(solved.mesh, solved.displacement, material).relative
     record(
@@ -179,7 +179,7 @@ def test_the_lobe_load_on_the_part_lies_between(case: str, record) -> None:
 
 
 def test_the_finest_known_answer_lies_within(record) -> None:
-    found = enclosed(design_of("cup, six holes").part("flexspline"), exact)
+    found = two_bodies(design_of("cup, six holes").part("flexspline"), exact).enclosure()
     record(
         "K_b of xb1-40 by two bodies of revolution", "the finest mesh known",
         FINEST_KNOWN, found.K_Nm_per_rad, "N·m/rad",

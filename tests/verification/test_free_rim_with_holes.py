@@ -15,7 +15,7 @@ from lobe_stiffness import lobe_stiffness
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.enclosure import enclosed
+from flexspline.pipeline.enclosure import two_bodies
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.revolved import lobes
@@ -46,7 +46,7 @@ def test_the_free_rim_meets_its_tolerance_and_is_right(
         found.K_Nm_per_rad,
         "N·m/rad",
     )
-    bodies = enclosed(part.part, lambda body: lobes(body, False, 0.002))
+    bodies = two_bodies(part.part, lambda body: lobes(body, False, 0.002)).enclosure()
     record(
         f"K_b of {file.removesuffix('.toml')} by two bodies of revolution, lobes, nothing on the seat",
         "tetrahedra with the holes",

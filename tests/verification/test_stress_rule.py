@@ -15,7 +15,6 @@ from flexspline.fea.stress_rule import judged
 from flexspline.fea.types import Elastic, StressPeak
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian_of
 from flexspline.pipeline.study.evaluate import figures_of
 
 STEEL = Elastic(206e3, 0.3)
@@ -88,8 +87,7 @@ def test_the_edge_of_the_seat_is_singular() -> None:
     """A rigid seat that ends on a smooth wall: the stress rises towards its end without bound."""
     wall = CUP.wall_thickness_mm
     near, far = (
-        ellipse_stress(meridian_of(CUP), STEEL, 0.2, apart, 0.005).peak
-        for apart in (wall, 2 * wall)
+        ellipse_stress(CUP.meridian(), STEEL, 0.2, apart, 0.005).peak for apart in (wall, 2 * wall)
     )
     assert near.at_excluded_border
     assert near.mises_MPa > 1.1 * far.mises_MPa

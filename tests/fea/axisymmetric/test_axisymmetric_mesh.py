@@ -11,7 +11,6 @@ from example_cup import CUP
 from flexspline.fea.axisymmetric.bisection import refined, refined_repeatedly
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
 from flexspline.fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
-from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian, Segment
 
 
@@ -34,13 +33,13 @@ def randomly_refined(mesh, seed: int):
 
 
 def test_first_mesh_has_the_promised_angles():
-    mesh = triangulate(meridian_of(CUP))
+    mesh = triangulate(CUP.meridian())
     # nodes are put on arcs as edges are halved, before triangles are judged: no slack but rounding
     assert angles(mesh.points, mesh.triangles).min() > SMALLEST_ANGLE - 1e-9
 
 
 def test_refinement_stays_conforming_and_well_shaped():
-    mesh = triangulate(meridian_of(CUP))
+    mesh = triangulate(CUP.meridian())
     for seed in range(4):
         mesh = randomly_refined(mesh, seed)
         pairs = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
@@ -73,7 +72,7 @@ def test_what_is_refined_repeatedly_is_cut_in_sixteen():
 
 
 def test_volumes_enclose_pappus_and_close_up():
-    outline = meridian_of(CUP)
+    outline = CUP.meridian()
     mesh = triangulate(outline)
     apart = []
     for _ in range(3):
@@ -87,7 +86,7 @@ def test_volumes_enclose_pappus_and_close_up():
 
 
 def test_every_arc_clears_the_polygons():
-    mesh = randomly_refined(randomly_refined(triangulate(meridian_of(CUP)), 1), 2)
+    mesh = randomly_refined(randomly_refined(triangulate(CUP.meridian()), 1), 2)
     for index, s in enumerate(mesh.outline.segments):
         if s.centre is None:
             continue
@@ -100,7 +99,7 @@ def test_every_arc_clears_the_polygons():
 
 
 def test_nodes_of_fillets_lie_on_the_arc_after_refinement():
-    mesh = randomly_refined(triangulate(meridian_of(CUP)), 3)
+    mesh = randomly_refined(triangulate(CUP.meridian()), 3)
     for index, s in enumerate(mesh.outline.segments):
         nodes = np.unique(mesh.edges[mesh.edge_segment == index])
         off = np.linalg.norm(mesh.points[nodes] - s.nearest(mesh.points[nodes]), axis=1)

@@ -10,7 +10,10 @@ from PIL import Image
 from pypdf import PdfReader
 from written_report import write_report
 
+from flexspline.fea.types import Shortfall
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.numbers import THIN
+from flexspline.results.quantities import quantity
 from flexspline.results.report.budget import budget
 from flexspline.results.report.document import (
     Break,
@@ -63,7 +66,7 @@ def test_report_says_the_numbers(tmp_path):
 
 def test_report_without_pictures_and_rim_loads(tmp_path):
     bare = content(
-        stiffnesses={"K_b": K_B, "K_e": K_E}, flexspline_peak=None, wave_generator_peak=None,
+        stiffnesses=Stiffnesses({"K_b": K_B, "K_e": K_E}), flexspline_peak=None, wave_generator_peak=None,
         versions=None, stage_seconds=None,
     )  # fmt: skip
     write_report(tmp_path / "r.pdf", bare)
@@ -115,9 +118,9 @@ def test_same_content_gives_the_same_bytes(tmp_path):
 
 
 def test_series_bounds_use_the_k_b_of_the_sum():
-    low, high = content().K_series_bounds_Nm_per_rad
-    assert low == pytest.approx(1 / (1 / 31607.0 + 1 / 35263.0))
-    assert high == pytest.approx(1 / (1 / 31703.0 + 1 / 35317.0))
+    _, series, *_ = answers(content())
+    ends = 1 / (1 / 31607.0 + 1 / 35263.0), 1 / (1 / 31703.0 + 1 / 35317.0)
+    assert series["bounds"] == quantity("K_series_Nm_per_rad").range_text(*ends)
 
 
 @pytest.mark.parametrize(("case", "K_b"), [("uniform", "K_b"), ("lobes", "K_b,lobes")])
@@ -150,7 +153,7 @@ def test_a_mesh_that_gave_no_stiffness_says_what_it_is_for(tmp_path, models, fle
     """Bodies of revolution are solved on the meridian; the figure has tetrahedra."""
     K_b, K_lobes = (replace(K_B, model=model) for model in models)
     shown = content(
-        stiffnesses={"K_b": K_b, "K_b_lobes": K_lobes, "K_e": K_E},
+        stiffnesses=Stiffnesses({"K_b": K_b, "K_b_lobes": K_lobes, "K_e": K_E}),
         pictures=blank_pictures(tmp_path, 1600, 1200, ""),
     )
     captions = {
@@ -229,7 +232,8 @@ def test_the_whole_gear_has_its_section(tmp_path):
 
 
 def test_a_gear_that_was_not_found_costs_only_its_section(tmp_path):
-    write_report(tmp_path / "r.pdf", content(gear=None, gear_missing="the play takes the stroke"))
+    missing = {"gear": Shortfall("the play takes the stroke")}
+    write_report(tmp_path / "r.pdf", content(gear=None, missing=missing))
     text, _ = text_of(tmp_path / "r.pdf")
     assert "Not computed: the play takes the stroke." in text
     assert "84.6" in text
@@ -245,7 +249,8 @@ def test_no_total_is_taken_for_another(tmp_path):
                   "twist between ±", "237.0 arcsec, and its lost motion include",
                   "rim contact and bearing"):  # fmt: skip
         assert words in first, words
-    write_report(tmp_path / "r.pdf", content(gear=None, gear_missing="no equilibrium"))
+    missing = {"gear": Shortfall("no equilibrium")}
+    write_report(tmp_path / "r.pdf", content(gear=None, missing=missing))
     text, _ = text_of(tmp_path / "r.pdf")
     assert "a catalogue" not in text
     assert "twist between ±" not in text

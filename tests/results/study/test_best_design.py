@@ -18,6 +18,7 @@ from flexspline.pipeline.study.source import study_name
 from flexspline.pipeline.study.start import start_outcome
 from flexspline.results.report.payload import payload_of
 from flexspline.results.study.best_design import write_best_design
+from flexspline.results.study.best_stress import BestStress
 from flexspline.results.study.design_warnings import design_warnings
 from flexspline.results.study.notes import notes
 from flexspline.results.study.record import summary, words
@@ -193,7 +194,7 @@ def test_the_captions_say_only_what_is_drawn() -> None:
         made = study_document(
             result_of((0.55, 400.0), (0.7, 400.0), text=text),
             ("parallel.png", "best_stress.png"),
-            best_peak_MPa=377.0,
+            best=BestStress(peak_MPa=377.0),
         )
         said = str(payload_of(made))
         assert ("a bar marks the range" in said) is bars
