@@ -86,7 +86,8 @@ def largest_of(stresses: Sequence[Stresses], edges: SharpEdges) -> StressPeak:
     """
     points = np.concatenate([s.points for s in stresses])
     mises = np.concatenate([von_mises(s.values) for s in stresses])
-    away = edges.away(points)
+    # a point at the distance but for rounding is at the distance
+    away = edges.away(points) * (1 + 1e-9)
     counted = np.flatnonzero(away >= edges.exclusion_mm)
     if not len(counted):
         raise SolveError(f"no point of the part is {edges.exclusion_mm:g} mm away from its edges")

@@ -59,7 +59,7 @@ def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
     def fails(*asked: object, **more: object) -> None:
         raise torque_stress.ComputationError("no field")
 
-    monkeypatch.setattr(torque_stress, "TorsionAtPoints", fails)
+    monkeypatch.setattr(torque_stress, "FieldAtPoints", fails)
     whole = torque_stress.torque_field(part)
     assert len(whole.displacement) == len(superposed.displacement)
     # both are u₀ + v, but for the meshes' errors
