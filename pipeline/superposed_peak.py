@@ -33,6 +33,9 @@ MOST_ELEMENTS = 60_000
 CHANGE_DOUBT = 0.2
 """Of what the cuts change at the peak, on the mesh that gave K: six cups and hats had 0.001 to 0.07."""
 
+FIRST_OFF = "beside thin material the first mesh had up to 13 % too much"
+"""0.3 mm between holes of 4.4 mm and a boss's edge: 1.814 MPa under torque, where NGSolve has 1.613."""
+
 
 @dataclass(frozen=True)
 class Change:
@@ -69,10 +72,10 @@ class Superposition:
         refined = _Refined(self)
         most = MOST_ELEMENTS / HALVED_TIMES / self.copies
         short = refine(refined, self.meshed.mesh, Deadline(SOLID_SECONDS), most)
-        if short and refined.moved < inf:
-            short = replace(
-                short, words=f"{short}; the last one moved it by {percent(refined.moved)}"
-            )
+        if short:
+            moved = refined.moved
+            far = FIRST_OFF if moved == inf else f"the last one moved it by {percent(moved)}"
+            short = replace(short, words=f"{short}; {far}")
         return replace(refined.field, peak=replace(refined.field.peak, shortfall=short))
 
 
