@@ -59,10 +59,10 @@ class FieldWithoutCuts:
 
 @dataclass(frozen=True)
 class SuperposedField:
-    """The whole field, and the von Mises stress (n,) [MPa] at its nodes of what the cuts change alone."""
+    """The whole field, and the stress (n, 3, 3) [MPa] at its nodes of what the cuts change alone."""
 
     whole: SolidField
-    change_mises: np.ndarray
+    changed: np.ndarray
 
 
 def superposed_field(
@@ -104,7 +104,7 @@ def superposed_field(
     beside = left_out[mesh.cells].any(axis=1)
     stress[left_out] = changed[left_out] + _element_means(mesh, beside, without_cuts)[left_out]
     whole = SolidField(mesh, load_case, displacement + change, von_mises(stress), peak)
-    return SuperposedField(whole, von_mises(changed))
+    return SuperposedField(whole, changed)
 
 
 def _between_nodes(mesh: TetMesh, changed: np.ndarray, without_cuts: FieldWithoutCuts) -> Stresses:
