@@ -34,8 +34,8 @@ MISFIT_SHARE = 0.4
 """Of the largest raw less averaged stress of the change, beside the peak: so far the peak may move. The next
 mesh moved it by 0.2 to 0.35 of that stress on a shaft and four cups, by less on two."""
 BESIDE_CUTS = 1.2
-"""Of the largest stress beside the cuts on the first mesh. The second had up to 1.06 times as much on six cups
-and hats on the ellipse; the whole field of such meshes missed up to 16 %."""
+"""Of the largest stress beside the cuts on the first mesh. The second had up to 1.06 times as much on six
+cups and hats on the ellipse; the whole field of such meshes missed up to 16 %."""
 FIRST_OFF = "beside thin material the first mesh had up to 13 % too much"
 """0.3 mm between holes of 4.4 mm and a boss's edge: 1.814 MPa under torque, where NGSolve has 1.613."""
 

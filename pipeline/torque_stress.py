@@ -30,6 +30,10 @@ from flexspline.pipeline.superposed_peak import Change, Superposition
 from flexspline.pipeline.unfilleted_shaft import FILLETS, marked_unfilleted
 from flexspline.pipeline.wave_generator import sharp_edges
 
+WHOLE_FIELD = Shortfall(
+    "it is of the whole field on the mesh that gave K, where such peaks were up to a fifth off"
+)
+
 
 def torque_field(model: PartModel) -> SolidField:
     """Return displacement and stress under the torque T_L, with the peak of the model that answers.
@@ -125,7 +129,10 @@ def _load(model: PartModel) -> BodyLoad:
 
 
 def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
-    """Of a mesh that is refined no further since two bodies of revolution enclose K (`twisted_part`)."""
+    """Of a mesh that knows K by the cuts' effect only, or that is refined no further since two bodies of
+    revolution enclose K (`twisted_part`)."""
+    if twisted.change is not None:
+        return WHOLE_FIELD
     half = twisted.stiffness.half_width
     if half <= tolerance:
         return MET

@@ -61,6 +61,8 @@ def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
 
     monkeypatch.setattr(torque_stress, "FieldAtPoints", fails)
     whole = torque_stress.torque_field(part)
+    assert not superposed.peak.shortfall
+    assert "of the whole field on the mesh" in whole.peak.shortfall.words
     assert len(whole.displacement) == len(superposed.displacement)
     # both are u₀ + v, but for the meshes' errors
     assert whole.displacement == pytest.approx(
