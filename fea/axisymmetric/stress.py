@@ -45,11 +45,10 @@ def torsion_stress(
     exclusion_mm: float,
     tolerance: float,
     deadline: Deadline = NO_DEADLINE,
-    boxes: tuple[Box, ...] = (),
 ) -> RevolvedField:
     """Return the field of the load `torque`; parameters and errors are those of `ellipse_stress`."""
     load = torque(driven, torque_Nm)
-    return StressProblem(outline, material, load, exclusion_mm, tolerance, deadline, boxes).field()
+    return StressProblem(outline, material, load, exclusion_mm, tolerance, deadline).field()
 
 
 def ellipse(w0_mm: float) -> HarmonicLoad:

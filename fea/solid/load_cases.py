@@ -13,7 +13,7 @@ from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.errors import SolveError
 from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
-from flexspline.fea.solid.ellipse_walls import harmonic_walls
+from flexspline.fea.solid.harmonic_walls import harmonic_walls
 from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.solved import Solved, SolvedCorrection, SolvedStiffness
 from flexspline.fea.solid.solver import Solution

@@ -1,4 +1,4 @@
-"""Forces on the walls of bolt holes that take a harmonic's tractions off them, as a wave on half a repeat."""
+"""Forces on the walls of cuts that take a harmonic's tractions off them, as a wave on half a repeat."""
 
 from __future__ import annotations
 
