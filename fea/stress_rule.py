@@ -34,9 +34,16 @@ class Largest(Protocol):
 
 
 def judged(
-    mises_MPa: float, at_mm: tuple[float, float, float], exclusion_mm: float, largest: Largest
+    mises_MPa: float,
+    at_mm: tuple[float, float, float],
+    exclusion_mm: float,
+    largest: Largest,
+    blind: bool = False,
 ) -> StressPeak:
-    """The peak found at `exclusion_mm`, with what another distance would make of it."""
+    """The peak found at `exclusion_mm`, with what another distance would make of it.
+
+    `blind`: the elements there are too long to show whether the stress rises nearer to the edge.
+    """
     farther = largest(FARTHER * exclusion_mm)
     nearer = largest(NEARER * exclusion_mm, exclusion_mm)
     falls = farther is None or farther < (1 - FALL_SHARE) * mises_MPa
@@ -47,6 +54,6 @@ def judged(
         f"points nearer than {exclusion_mm:g} mm to a sharp edge or a patch edge,"
         " where the linear solution is singular",
         exclusion_mm,
-        falls and rises,
+        falls and (rises or blind),
         largest(TWICE * exclusion_mm),
     )

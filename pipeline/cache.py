@@ -29,7 +29,7 @@ T = TypeVar("T")
 PLACE_DIGITS = 12
 """Hexadecimal ones of a key that tell its lock's place in a file: two of a thousand keys share one once in
 5e8 times, and wait for each other."""
-FORMAT = 32
+FORMAT = 33
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

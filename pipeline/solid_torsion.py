@@ -166,7 +166,7 @@ def twisted(
     if again:
         limit_s = ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS
         first = replace(first, time_limit_s=limit_s)
-    begun_coarse = again and not model.is_swept and _cuts_alone(model, tolerance)
+    begun_coarse = again and not model.is_swept and _cuts_alone(model)
     if begun_coarse:
         first = first.scaled(COARSER_FIRST)
     slow = MET
@@ -198,7 +198,7 @@ def twisted(
 
 def _first_spec(meshes: PartMeshes, tolerance: float) -> MeshSpec:
     """Of the first mesh; errors as of `PartMeshes.coarsened`."""
-    alone = _cuts_alone(meshes.model, tolerance)
+    alone = _cuts_alone(meshes.model)
     if alone and meshes.model.name == "flexspline" and meshes.model.is_swept:
         return meshes.coarsened(FLEXSPLINE_FIRST_ELEMENTS)
     if tolerance < COARSE_TOLERANCE or not alone:
@@ -211,27 +211,27 @@ def _first_spec(meshes: PartMeshes, tolerance: float) -> MeshSpec:
     return meshes.coarsened(FIRST_ELEMENTS) if few else coarse
 
 
-def _cuts_alone(model: PartModel, tolerance: float) -> bool:
+def _cuts_alone(model: PartModel) -> bool:
     """Whether the meshes need only tell what holes and keyway change of the part without them.
 
-    Not where no error is asked for, or a model is chosen by name; nor where hole and keyway are one cut, from
-    the held face to the driven one: the walls tell the energy of cuts that touch one of these.
+    Not where a model is chosen by name; nor where hole and keyway are one cut, from the held face to the
+    driven one: the walls tell the energy of cuts that touch one of these.
     """
     by_name = model.context.design.solver.model != "auto"
     part = model.part
-    return not (tolerance == inf or by_name or part.is_revolved or part.cuts_meet)
+    return not (by_name or part.is_revolved or part.cuts_meet)
 
 
 def _field(model: PartModel, tolerance: float) -> TorsionSolver:
     """What the cuts change, where `_cuts_alone` and the part without them can be solved; else all of it."""
     full = FullTorsion(model.material, model.part.driven)
-    if not _cuts_alone(model, tolerance):
+    if not _cuts_alone(model):
         return full
     part, whole = model.part, model.part.without_holes()
+    width = WHOLE_SHARE * min(tolerance, model.tolerance)
     solutions = solved_torsions(
-        whole.meridian, model.material, whole.driven, WHOLE_SHARE * tolerance, at_cuts(part),
-        Deadline(STAGE_SECONDS),
-    )  # fmt: skip
+        whole.meridian, model.material, whole.driven, width, at_cuts(part), Deadline(STAGE_SECONDS)
+    )
     wholes = (WholeTurned(part, finer, coarser) for coarser, finer in pairwise(solutions))
     with model.context.progress.stage(f"torsion of the {model.name} without {part.cuts}"):
         try:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
-import numpy as np
-
+from flexspline.fea.axisymmetric.field_at_points import FieldAtPoints
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import torsion_stress
-from flexspline.fea.axisymmetric.torsion_at_points import TorsionAtPoints
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.load_cases import torsion_change
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import stress_field
-from flexspline.fea.solid.superposed_stress import FieldWithoutCuts, superposed_field
-from flexspline.fea.types import MET, Shortfall, SolidField
+from flexspline.fea.solid.superposed_stress import FieldWithoutCuts
+from flexspline.fea.types import MET, Shortfall, SolidField, TetMesh
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.percent import percent
@@ -26,8 +26,13 @@ from flexspline.pipeline.peak_with_holes import (
     peak_tolerance,
 )
 from flexspline.pipeline.solid_torsion import TwistedPart
+from flexspline.pipeline.superposed_peak import Change, Superposition
 from flexspline.pipeline.unfilleted_shaft import FILLETS, marked_unfilleted
 from flexspline.pipeline.wave_generator import sharp_edges
+
+WHOLE_FIELD = Shortfall(
+    "it is of the whole field on the mesh that gave K, where such peaks were up to a fifth off"
+)
 
 
 def torque_field(model: PartModel) -> SolidField:
@@ -42,7 +47,8 @@ def torque_field(model: PartModel) -> SolidField:
     ComputationError, MemoryError : the solve failed.
     """
     twisted = twisted_part(model)
-    solved = _superposed(model, twisted) or _of_mesh(model, twisted)
+    superposed = _superposed(model, twisted)
+    solved = superposed or _of_mesh(model, twisted)
     if model.axisymmetric:
         left_out = FILLETS if twisted.without_fillets else ""
         return replace(solved, peak=body_peak(model, _load(model)), left_out=left_out)
@@ -50,8 +56,9 @@ def torque_field(model: PartModel) -> SolidField:
         agreed = peak_by_two_bodies(model, _load(model), lambda: solved)
         if agreed is not None and agreed.stands_for:
             return replace(solved, peak=agreed)
-    shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
-    solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
+    if superposed is None:
+        shortfall = twisted.stiffness.shortfall or _of_one_mesh(twisted, model.tolerance)
+        solved = replace(solved, peak=replace(solved.peak, shortfall=shortfall))
     return marked_unfilleted(solved) if twisted.without_fillets else solved
 
 
@@ -78,24 +85,24 @@ def _superposed(model: PartModel, twisted: TwistedPart) -> SolidField | None:
     whole = replace(model, part=model.part.without_holes())
     # of 1 rad, by the K that this change of the displacement leaves
     angle = model.context.design.load.torque_Nm / twisted.stiffness.levels[-1].K_Nm_per_rad
+    known, first = twisted.change * angle, twisted.meshed.mesh
     with _stage(model):
         try:
-            without = TorsionAtPoints(
+            without = FieldAtPoints(
                 _load(whole).solve(whole.part.meridian, Deadline(STAGE_SECONDS))
             )
+            times = angle / without.turn
 
-            def at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-                displacement, stress = without.at(points)
-                return displacement * angle, stress * angle
+            def change(mesh: TetMesh) -> Change:
+                if mesh is first:
+                    return Change(mesh, known)
+                solid = Model.of(mesh, model.material)
+                moved = torsion_change(solid, model.part.driven, model.part, without)
+                return Change(mesh, moved * times)
 
-            return superposed_field(
-                twisted.meshed.mesh,
-                twisted.change * angle,
-                FieldWithoutCuts(at, without.field.places),
-                model.material,
-                _title(model),
-                sharp_edges(model, twisted.meshed),
-            )
+            return Superposition(
+                model, _title(model), FieldWithoutCuts.of(without, times), twisted.meshed, 1, change
+            ).field()
         except ComputationError as fault:
             model.context.progress.note(f"  {model.name}: not solved without its cuts, {fault}")
             return None
@@ -122,7 +129,10 @@ def _load(model: PartModel) -> BodyLoad:
 
 
 def _of_one_mesh(twisted: TwistedPart, tolerance: float) -> Shortfall:
-    """Of a mesh that is refined no further since two bodies of revolution enclose K (`twisted_part`)."""
+    """Of a mesh that knows K by the cuts' effect only, or that is refined no further since two bodies of
+    revolution enclose K (`twisted_part`)."""
+    if twisted.change is not None:
+        return WHOLE_FIELD
     half = twisted.stiffness.half_width
     if half <= tolerance:
         return MET

@@ -136,9 +136,14 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
                 solved.mesh,
                 solved.displacement,
                 flexspline.material,
-                f"wave generator, w0 = {w0:g} mm",
+                ellipse_title(flexspline),
                 sharp_edges(flexspline, meshed),
             )
+
+
+def ellipse_title(flexspline: PartModel) -> str:
+    """Return what fields of the ellipse are called."""
+    return f"wave generator, w0 = {flexspline.context.design.w0_mm:g} mm"
 
 
 def sharp_edges(model: PartModel, meshed: MeshedPart) -> SharpEdges:

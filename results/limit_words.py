@@ -42,7 +42,7 @@ def passed_line(passed: PassedLimit) -> str:
     figure = f"{stress.name}: {stress.with_unit(passed.peak.mises_MPa)}"
     if passed.peak.at_excluded_border:
         far = passed.peak.exclusion_mm
-        place = "at" if far is None else f"{far:.3g} mm from"
+        place = "at" if far is None else f"at the border of what is left out, {far:.3g} mm from"
         figure += f" ({place} an edge; the stress still rises towards this edge)"
     where = f" ({passed.key})" if passed.key else ""
     return f"{figure} is {beside_figure(passed)}{where}"

@@ -26,7 +26,7 @@ MEANING = (
 
 def border_note(exclusion_mm: float, twice_MPa: float | None) -> str:
     """The mark, the distance left out, and what the peak is at twice of it."""
-    text = f"{BORDER}, {exclusion_mm:.3g} mm from an edge"
+    text = f"{BORDER}, which is {exclusion_mm:.3g} mm from an edge"
     if twice_MPa is None:
         return text
     twice = quantity("torque_peak_mises_MPa").with_unit(twice_MPa)

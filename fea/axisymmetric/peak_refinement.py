@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, pi, sin
 
-from flexspline.fea.axisymmetric.bisection import refined_with_parents
+from flexspline.fea.axisymmetric.bisection import Box, refined_with_parents, refined_within
 from flexspline.fea.axisymmetric.harmonics import Amplitudes, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.marking import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
@@ -60,6 +60,7 @@ class StressProblem:
     tolerance : the peak may change by no more than this fraction over QUIET_ROUNDS refinements. Where a mesh
         fails, is too large or would end after the deadline, the peak is that of the mesh before, and its
         `shortfall` says why.
+    boxes : where the first mesh is finer, if its field is wanted there.
     """
 
     outline: Meridian
@@ -68,6 +69,7 @@ class StressProblem:
     exclusion_mm: float
     tolerance: float
     deadline: Deadline = NO_DEADLINE
+    boxes: tuple[Box, ...] = ()
 
     def field(self) -> RevolvedField:
         """Refine until the peak is within the tolerance, and return the last field.
@@ -77,16 +79,18 @@ class StressProblem:
         MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
         """
         meshed = _MeshedField(self)
-        shortfall = refine(meshed, triangulate(self.outline), self.deadline, MOST_TRIANGLES)
+        shortfall = refine(meshed, self._first_mesh(), self.deadline, MOST_TRIANGLES)
         return meshed.field(shortfall)
 
     def fields(self) -> Iterator[RevolvedField]:
         """Yield the field of each mesh whose peak counts; the last one is `field`, and so are the errors."""
         meshed = _MeshedField(self)
-        mesh = triangulate(self.outline)
-        for shortfall in refinements(meshed, mesh, self.deadline, MOST_TRIANGLES):
+        for shortfall in refinements(meshed, self._first_mesh(), self.deadline, MOST_TRIANGLES):
             if meshed.peaks or shortfall:
                 yield meshed.field(shortfall)
+
+    def _first_mesh(self) -> MeridianMesh:
+        return refined_within(triangulate(self.outline), self.boxes)
 
 
 class _MeshedField:

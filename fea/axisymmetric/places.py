@@ -12,11 +12,12 @@ from skfem.element import DiscreteField
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.axisymmetric.triangle_search import triangles_of
-from flexspline.fea.quadratic_triangle import CORNERS_AND_MIDDLES
 
 OUTSIDE = 0.01
 """Share of the mesh's size that a point may lie outside. A mesher's walls may begin 1e-6 mm outside, points
 of a parabola 1e-4 of its radius."""
+PAIRS = 2_000_000
+"""Of points and boundary edges at a time: 16 MB an array."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Places:
 
     @classmethod
     def of(cls, space: Space, r: np.ndarray, z: np.ndarray) -> Places:
-        """Find points at r, z (k,) [mm]; a point just outside takes the values at the nearest number's place.
+        """Find points at r, z (k,) [mm]; a point just outside takes the values at the nearest place.
 
         Raises
         ------
@@ -42,7 +43,7 @@ class Places:
         """
         mesh, element = space.basis.mesh, space.basis.elem
         straight = MeshTri(mesh.p[:, : mesh.t.max() + 1], mesh.t, sort_t=False)
-        triangle, local = located(straight, space.places, space.basis.element_dofs, r, z)
+        triangle, local = located(straight, r, z)
         mapping, at = MappingAffine(straight), local[:, :, None]
         shapes = [element.gbasis(mapping, at, i, tind=triangle)[0] for i in range(6)]
         return cls(space.basis.element_dofs[:, triangle], tuple(shapes))
@@ -55,31 +56,38 @@ class Places:
         return DiscreteField(value, grad=slope)
 
 
-def located(
-    straight: MeshTri, numbers: np.ndarray, cells: np.ndarray, r: np.ndarray, z: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def located(straight: MeshTri, r: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the triangle (k,) of each point r, z (k,) [mm], and its reference coordinates (2, k) there.
 
-    `numbers` (count, 2) are the places of the P2 numbers, `cells` (6, m) each triangle's numbers. A point
-    just outside is moved to the nearest number, which may lie outside of straight edges itself: on an arc.
+    A point just outside is moved to the nearest one of the straight boundary edges. The numbers of a curved
+    edge are those of its chord: a point on a fillet's arc takes its own values there.
 
     Raises
     ------
     MeshingError : one is farther outside than OUTSIDE of the mesh's size.
     """
-    from scipy.spatial import cKDTree
-
     points = np.stack([r, z])
     triangle = triangles_of(straight, points)
-    outside = triangle < 0
-    triangle[outside] = 0
-    local = MappingAffine(straight).invF(points[:, :, None], tind=triangle)[:, :, 0]
-    if outside.any():
-        away, nearest = cKDTree(numbers).query(points[:, outside].T)
+    outside = np.flatnonzero(triangle < 0)
+    if len(outside):
+        points[:, outside], triangle[outside] = _on_boundary(straight, points[:, outside])
+        away = np.hypot(*points[:, outside] - np.stack([r, z])[:, outside])
         if away.max() > OUTSIDE * np.ptp(straight.p, axis=1).max():
-            raise MeshingError(f"{outside.sum()} of {len(r)} places are not on the meridian")
-        owner = np.zeros(len(numbers), int)
-        owner[cells.ravel()] = np.arange(cells.size)
-        of_cell, triangle[outside] = np.divmod(owner[nearest], cells.shape[1])
-        local[:, outside] = CORNERS_AND_MIDDLES[:, of_cell]
-    return triangle, local
+            raise MeshingError(f"{len(outside)} of {len(r)} places are not on the meridian")
+    return triangle, MappingAffine(straight).invF(points[:, :, None], tind=triangle)[:, :, 0]
+
+
+def _on_boundary(straight: MeshTri, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nearest points (2, k) of the boundary edges, and their triangles (k,)."""
+    edges = straight.boundary_facets()
+    start, end = straight.p[:, straight.facets[:, edges]].swapaxes(0, 1)
+    along = end - start
+    nearest, triangle = np.empty_like(points), np.empty(points.shape[1], int)
+    for some in np.array_split(np.arange(points.shape[1]), 1 + points.size * len(edges) // PAIRS):
+        offset = points[:, some, None] - start[:, None]
+        share = np.clip((offset * along[:, None]).sum(axis=0) / (along**2).sum(axis=0), 0, 1)
+        left = np.hypot(*offset - share * along[:, None])
+        edge, point = left.argmin(axis=1), np.arange(len(some))
+        nearest[:, some] = start[:, edge] + share[point, edge] * along[:, edge]
+        triangle[some] = straight.f2t[0, edges[edge]]
+    return nearest, triangle

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.fea.axisymmetric.bisection import Box
 from flexspline.fea.axisymmetric.harmonics import Amplitudes, Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.peak_refinement import HarmonicLoad, StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
@@ -24,6 +25,7 @@ def ellipse_stress(
     exclusion_mm: float,
     tolerance: float,
     deadline: Deadline = NO_DEADLINE,
+    boxes: tuple[Box, ...] = (),
 ) -> RevolvedField:
     """Return the field of the load `ellipse`, refined until its peak is known; see `StressProblem`.
 
@@ -32,7 +34,7 @@ def ellipse_stress(
     MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
     """
     load = ellipse(w0_mm)
-    return StressProblem(outline, material, load, exclusion_mm, tolerance, deadline).field()
+    return StressProblem(outline, material, load, exclusion_mm, tolerance, deadline, boxes).field()
 
 
 def torsion_stress(

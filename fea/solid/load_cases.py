@@ -7,11 +7,13 @@ from math import pi
 import numpy as np
 from skfem import Functional, LinearForm
 
+from flexspline.fea.axisymmetric.field_at_points import FieldAtPoints
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
 from flexspline.fea.cylindrical import AXIAL, RADIAL, TANGENTIAL
 from flexspline.fea.errors import SolveError
 from flexspline.fea.lobe_torque import LOBE_TORQUE_NMM, stiffness_of_work
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
+from flexspline.fea.solid.harmonic_walls import harmonic_walls
 from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.solid.solved import Solved, SolvedCorrection, SolvedStiffness
 from flexspline.fea.solid.solver import Solution
@@ -26,6 +28,7 @@ from flexspline.fea.solid.superposition import (
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM
+from flexspline.geometry.part import Part
 
 BALANCE_LIMIT = 1e-6
 """Largest relative difference of K by energy and K by reaction. Measured: 1e-12 to 1e-9."""
@@ -73,6 +76,22 @@ def torsion_correction(model: Model, driven: str, whole: WholeTurned) -> SolvedC
     walls, before = _walls_of(model, whole)
     forces = model.frames.to_cylindrical(walls.forces).ravel()
     return _correction(model, walls, before, _turned(model, driven).solve_at_rest(forces))
+
+
+def torsion_change(
+    model: Model, driven: str, part: Part, without_cuts: FieldAtPoints
+) -> np.ndarray:
+    """Return what the cuts change of the displacement (n, 3) [mm], Cartesian, at the turn of that field.
+
+    Raises
+    ------
+    SolveError. MeshingError, MeshQualityError : as `harmonic_walls` and `Walls.of`.
+    """
+    _, forces = harmonic_walls(Walls.of(model.mesh, part), without_cuts, repeats_of(model.mesh))
+    load = model.frames.to_cylindrical(forces).ravel()
+    return model.frames.to_cartesian(
+        _turned(model, driven).solve_at_rest(load).unknowns.reshape(-1, 3)
+    )
 
 
 def _walls_of(model: Model, whole: WholeTurned) -> tuple[TurnedWalls, TurnedWalls]:
@@ -222,11 +241,31 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
     nodes = model.on("seat")
     phi = np.arctan2(model.mesh.nodes[nodes, 1], model.mesh.nodes[nodes, 0])
     (wave,) = waves((2,), repeats_of(model.mesh))
+    shape = wave.of(lambda angle: w0_mm * np.cos(2 * angle), phi)
+    solved = _on_seat(model, wave, shape, np.zeros((len(model.mesh.nodes), 3)))
+    return _of_waves(model, [solved], "symmetric")
+
+
+def ellipse_correction(model: Model, part: Part, without_holes: FieldAtPoints) -> Solved:
+    """Return what the bolt holes change of `ellipse`, on the same mesh, from the field without them.
+
+    Raises
+    ------
+    SolveError. MeshingError, MeshQualityError : as `harmonic_walls` and `Walls.of`.
+    """
+    walls = Walls.of(model.mesh, part)
+    wave, forces = harmonic_walls(walls, without_holes, repeats_of(model.mesh))
+    solved = _on_seat(model, wave, 0.0, model.frames.to_cylindrical(forces))
+    return _of_waves(model, [solved], "symmetric")
+
+
+def _on_seat(
+    model: Model, wave: CyclicWave, radial_mm: np.ndarray | float, load: np.ndarray
+) -> SolvedWave:
     supports = WaveSupports(model, wave, antisymmetric=False)
-    supports.set(nodes, RADIAL, wave.of(lambda angle: w0_mm * np.cos(2 * angle), phi))
+    supports.set(model.on("seat"), RADIAL, radial_mm)
     supports.hold("mount")
-    solved_wave = supports.solve(np.zeros((len(model.mesh.nodes), 3)))
-    return _of_waves(model, [solved_wave], "symmetric")
+    return supports.solve(load)
 
 
 def _of_waves(model: Model, solved_waves: list[SolvedWave], parity: Parity) -> Solved:

@@ -48,6 +48,20 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
     return nodal_average(len(mesh.nodes), 9, parts()).reshape(-1, 3, 3)
 
 
+def misfit_beside(
+    mesh: TetMesh, u: np.ndarray, material: Elastic, nodal: np.ndarray, place: np.ndarray
+) -> float:
+    """Return the largest von Mises stress [MPa] of raw less averaged stress, in the elements at one node.
+
+    It is the node nearest to a place (3,) [mm]; `nodal` is `nodal_stress`.
+    """
+    node = np.linalg.norm(mesh.nodes - place, axis=1).argmin()
+    beside = np.flatnonzero((mesh.cells == node).any(axis=1))
+    cells, at_nodes = mesh.cells[beside], (NODES, np.ones(len(NODES)) / len(NODES))
+    basis = basis_of(mesh.curved.mesh, beside, at_nodes)
+    return float(von_mises(_stress(basis, u[cells], material) - nodal[cells]).max())
+
+
 def _parts(elements: int) -> Iterator[np.ndarray]:
     """The elements' numbers, STRESS_CHUNK_ELEMENTS at a time."""
     for start in range(0, elements, STRESS_CHUNK_ELEMENTS):

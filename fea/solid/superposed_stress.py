@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import pi, radians
 
 import numpy as np
 
+from flexspline.fea.axisymmetric.bisection import Box
+from flexspline.fea.axisymmetric.field_at_points import FieldAtPoints
 from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.solid.elements import basis_of, reference_values
 from flexspline.fea.solid.peak import SharpEdges, Stresses, largest_of, on_lattice, outer_facets
@@ -27,11 +30,39 @@ class FieldWithoutCuts:
     Attributes
     ----------
     at : displacements (k, 3) [mm] and stresses (k, 3, 3) [MPa] at points (k, 3) [mm], all Cartesian.
-    places : (j, 2) the meridian's own nodes r, z [mm].
+    places : (j, 2) the meridian's own nodes r, z [mm], and where its own peak is.
+    angles : [rad] where a harmonic is largest, up to half a turn; none where it is the same at all angles.
     """
 
     at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     places: np.ndarray
+    angles: tuple[float, ...]
+
+    @classmethod
+    def of(
+        cls, known: FieldAtPoints, times: float = 1.0, cuts: Sequence[Box] = ()
+    ) -> FieldWithoutCuts:
+        """Return a solved harmonic, or so many times it; no place is in a box, which the angles may cut."""
+
+        def at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            displacement, stress = known.at(points)
+            return displacement * times, stress * times
+
+        n = known.field.n
+        angles = tuple(k * pi / (2 * n) for k in range(2 * n + 1)) if n else ()
+        places = np.vstack([known.field.places, known.field.peak_rz])
+        for box in cuts:
+            low, high = np.array([box.r, box.z]).T
+            places = places[~((low <= places) & (places <= high)).all(axis=1)]
+        return cls(at, places, angles)
+
+
+@dataclass(frozen=True)
+class SuperposedField:
+    """The whole field, and the stress (n, 3, 3) [MPa] at its nodes of what the cuts change alone."""
+
+    whole: SolidField
+    changed: np.ndarray
 
 
 def superposed_field(
@@ -41,7 +72,7 @@ def superposed_field(
     material: Elastic,
     load_case: str,
     edges: SharpEdges,
-) -> SolidField:
+) -> SuperposedField:
     """Return `stress_field`, where the field of the part without holes and keyway is known at any point.
 
     `change` (n, 3) [mm] is what these cuts change of the displacement. Only its stress has the mesh's error,
@@ -72,23 +103,31 @@ def superposed_field(
     # drawn from node to node, the stress at a singular edge would reach as far as the mesh's elements
     beside = left_out[mesh.cells].any(axis=1)
     stress[left_out] = changed[left_out] + _element_means(mesh, beside, without_cuts)[left_out]
-    return SolidField(mesh, load_case, displacement + change, von_mises(stress), peak)
+    whole = SolidField(mesh, load_case, displacement + change, von_mises(stress), peak)
+    return SuperposedField(whole, changed)
 
 
 def _between_nodes(mesh: TetMesh, changed: np.ndarray, without_cuts: FieldWithoutCuts) -> Stresses:
-    """Return stresses at the meridian's own nodes, in planes of the mesh's nodes.
+    """Return stresses at the meridian's own nodes, in planes of the mesh's nodes or at the angles that count.
 
     Beside singular edges these are much closer to each other than the mesh's. `changed` (n, 3, 3) is taken
-    from the nodes nearest in r and z.
+    from the nodes nearest in these planes.
     """
     from scipy.spatial import cKDTree
 
     x, y, z = mesh.nodes.T
-    _, near = cKDTree(np.stack([np.hypot(x, y), z], axis=1)).query(without_cuts.places, PLANES)
-    phi = np.arctan2(y, x)[near]
+    if without_cuts.angles:
+        phi = np.array(
+            [a for a in without_cuts.angles if a <= radians(mesh.sector_deg) * (1 + 1e-9)]
+        )
+        phi = np.broadcast_to(phi, (len(without_cuts.places), len(phi)))
+    else:
+        tree = cKDTree(np.stack([np.hypot(x, y), z], axis=1))
+        phi = np.arctan2(y, x)[tree.query(without_cuts.places, PLANES)[1]]
     r, height = (np.broadcast_to(a[:, None], phi.shape) for a in without_cuts.places.T)
     points = np.stack([r * np.cos(phi), r * np.sin(phi), height], axis=2).reshape(-1, 3)
-    return Stresses(points, changed[near.ravel()] + without_cuts.at(points)[1])
+    near = cKDTree(mesh.nodes).query(points)[1]
+    return Stresses(points, changed[near] + without_cuts.at(points)[1])
 
 
 def _element_means(

@@ -269,7 +269,7 @@ def lobed_walls(
         fields = {c: places.see(amplitude[:, c]) for c in harmonic.components}
         stress = stress_of(harmonic, material, walls.r.ravel(), fields)
         (wave,) = waves((n,), repeats)
-        cosine, sine = (wave.of(partial(_around, f, n), walls.phi) for f in (np.cos, np.sin))
+        cosine, sine = (wave.of(partial(around, f, n), walls.phi) for f in (np.cos, np.sin))
         even = {k: stress[k] for k in (R_THETA, THETA_Z)}
         odd = {k: part for k, part in stress.items() if k not in even}
         pull = cosine * walls.pull(even) - sine * walls.pull(odd)
@@ -283,7 +283,8 @@ def lobed_walls(
         yield WallWave(wave, walls.forces(-pull), energy)
 
 
-def _around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarray) -> np.ndarray:
+def around(function: Callable[[np.ndarray], np.ndarray], n: int, phi: np.ndarray) -> np.ndarray:
+    """Return f(nφ)."""
     return function(n * phi)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,8 +27,8 @@ from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.wave_generator import solid_ellipse
 
 CUP = load_design(EXAMPLES / "xb1-40.toml")
-SOLID_MPa = -1.0
-"""What the solid model stands in with: no true peak."""
+SOLID_MPa, SUPERPOSED_MPa = -1.0, -2.0
+"""What the solid model and the superposition stand in with: no true peaks."""
 
 
 def model(design: Design, folder: Path) -> PartModel:
@@ -42,13 +43,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def part(folder: Path, monkeypatch: pytest.MonkeyPatch) -> PartModel:
-    """The example cup; its solid model says SOLID_MPa."""
+    """The example cup; its solid model says SOLID_MPa, the superposition SUPERPOSED_MPa."""
     cup = model(CUP, folder)
     whole = under_test.ellipse_peak(replace(cup, part=cup.part.without_holes()))
     asked: dict[str, Any] = {"mesh": None, "load_case": "", "displacement": None, "mises": None}
-    field = SolidField(**asked, peak=replace(whole, mises_MPa=SOLID_MPa))
-    monkeypatch.setattr(under_test, "solid_ellipse", lambda asked: field)
+    stand_ins = (("solid_ellipse", SOLID_MPa), ("superposed_ellipse", SUPERPOSED_MPa))
+    for name, value in stand_ins:
+        field = SolidField(**asked, peak=replace(whole, mises_MPa=value))
+        monkeypatch.setattr(under_test, name, partial(_stand_in, field))
     return cup
+
+
+def _stand_in(field: SolidField, asked: PartModel) -> SolidField:
+    return field
 
 
 def test_a_peak_is_as_close_as_K_is_asked_for(folder: Path) -> None:
@@ -71,11 +78,11 @@ def test_bodies_that_agree_answer_with_the_one_that_has_no_holes(part: PartModel
     assert not whole.stands_for
 
 
-def test_bodies_that_differ_leave_it_to_the_solid_model(part, monkeypatch) -> None:
+def test_bodies_that_differ_leave_it_to_the_superposition(part, monkeypatch) -> None:
     monkeypatch.setattr(
         peak_with_holes, "AGREEMENT", 0.0
     )  # two meshes never agree to the last digit
-    assert under_test.ellipse_peak(part).mises_MPa == SOLID_MPa
+    assert under_test.ellipse_peak(part).mises_MPa == SUPERPOSED_MPa
 
 
 @pytest.mark.parametrize(("share", "answered"), [(0.5, True), (0.8, False)])
@@ -93,7 +100,7 @@ def test_stress_at_the_holes_is_looked_up_where_its_bound_is_too_high(
     field = SolidField(mesh, "", np.zeros((2, 3)), mises, whole)
     monkeypatch.setattr(under_test, "coarse_ellipse", lambda asked: field)
     found = under_test.ellipse_peak(part).mises_MPa
-    assert found == (whole.mises_MPa if answered else SOLID_MPa)
+    assert found == (whole.mises_MPa if answered else SUPERPOSED_MPa)
 
 
 def test_where_no_mesh_can_be_made_the_peak_without_holes_is_given_and_said(
@@ -103,7 +110,7 @@ def test_where_no_mesh_can_be_made_the_peak_without_holes_is_given_and_said(
         raise ComputationError("no mesh")
 
     monkeypatch.setattr(peak_with_holes, "KIRSCH", 1e3)
-    for name in ("coarse_ellipse", "solid_ellipse"):
+    for name in ("coarse_ellipse", "solid_ellipse", "superposed_ellipse"):
         monkeypatch.setattr(under_test, name, fails)
     found = under_test.ellipse_peak(part)
     whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
@@ -116,7 +123,24 @@ def test_where_no_mesh_can_be_made_the_peak_without_holes_is_given_and_said(
 
 def test_the_solid_model_by_name_answers_itself(part: PartModel, folder: Path) -> None:
     by_name = model(CUP.changed({"solver.model": "solid"}), folder)
-    assert under_test.ellipse_peak(by_name).mises_MPa == SOLID_MPa
+    peak = under_test.ellipse_peak(by_name)
+    assert peak.mises_MPa == SOLID_MPa
+    # twice as large by the superposition: said
+    assert "plus what these change, has -2 MPa" in peak.shortfall.words
+    assert not under_test.ellipse_peak(part).shortfall
+
+
+def test_where_nothing_can_be_superposed_the_solid_models_peak_is_doubted(
+    part: PartModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(asked: PartModel) -> SolidField:
+        raise ComputationError("no walls")
+
+    monkeypatch.setattr(peak_with_holes, "AGREEMENT", 0.0)
+    monkeypatch.setattr(under_test, "superposed_ellipse", fails)
+    peak = under_test.ellipse_peak(part)
+    assert peak.mises_MPa == SOLID_MPa
+    assert "no walls" in peak.shortfall.words
 
 
 def test_a_row_of_holes_raises_the_stress_more_than_one_hole() -> None:

@@ -59,8 +59,10 @@ def test_where_the_meridian_is_not_solved_the_mesh_of_K_tells_all(
     def fails(*asked: object, **more: object) -> None:
         raise torque_stress.ComputationError("no field")
 
-    monkeypatch.setattr(torque_stress, "TorsionAtPoints", fails)
+    monkeypatch.setattr(torque_stress, "FieldAtPoints", fails)
     whole = torque_stress.torque_field(part)
+    assert not superposed.peak.shortfall
+    assert "of the whole field on the mesh" in whole.peak.shortfall.words
     assert len(whole.displacement) == len(superposed.displacement)
     # both are u₀ + v, but for the meshes' errors
     assert whole.displacement == pytest.approx(
@@ -81,3 +83,19 @@ def test_beside_an_outer_fillet_nothing_is_extrapolated(tmp_path: Path) -> None:
     ring = wide.flexspline.ring_radius * wide.load.torque_Nm / K
     assert np.linalg.norm(field.displacement, axis=1).max() == pytest.approx(ring, rel=1e-3)
     assert field.peak.mises_MPa == pytest.approx(without.peak.mises_MPa, rel=0.1)
+
+
+def test_beside_thin_material_the_mesh_is_refined_until_the_peak_stays(tmp_path: Path) -> None:
+    """0.3 mm between the holes and the edge of the boss. The mesh that gave K has 1.814 MPa."""
+    thin = with_values(
+        load_design(EXAMPLES / "xb1-40.toml"),
+        {"flexspline.bolt_hole_diameter_mm": 4.4, "flexspline.diaphragm_thickness_mm": 1.5,
+         "solver.tolerance_pct": 1.0},
+    )  # fmt: skip
+    cup = AnalysisContext(thin, Cache(tmp_path), Progress()).part("flexspline")
+    peak = torque_stress.torque_field(cup).peak
+    # NGSolve on the exported 30°, order 3, edges of 0.3 mm at the holes, 0.15 mm at the boss: 1.613.
+    # Both it and our meshes move by 2 % from mesh to mesh; a slow machine makes one mesh less
+    assert peak.mises_MPa == pytest.approx(1.613, rel=0.04)
+    assert peak.mises_at_twice_MPa == pytest.approx(1.151, rel=0.01)
+    assert "the last one moved it by" in peak.shortfall.words
