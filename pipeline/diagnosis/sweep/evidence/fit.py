@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from math import hypot, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.structure import FormKind
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
     GaussianEvidence,
     Posterior,
@@ -44,6 +46,10 @@ class SweepFit:
 
     evidence: GaussianEvidence
     posterior: Posterior
+    memo: dict[tuple[Hashable, ...], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """Results computed from this fit and needed again (`../../measurement/once.py`)."""
 
     @property
     def rig(self) -> FitContext:
@@ -159,6 +165,14 @@ class SweepFit:
             total += rig.gap_arcsec / 2 * (history.sign - side) - rig.compliance * ahead.carried_Nm
         for term, amplitudes in self._amplitudes(self.posterior):
             if term.owner == owner:
+                total += self.evidence.columns.all[:, term.at] @ amplitudes
+        return total
+
+    def added_by_form(self, owner: str, kind: FormKind) -> np.ndarray:
+        """(n,) angle [arcsec] that an owner's terms without a name add, of one form."""
+        total = np.zeros(len(self.rig.history))
+        for term, amplitudes in self._amplitudes(self.posterior):
+            if term.owner == owner and term.form is not None and term.form.kind == kind:
                 total += self.evidence.columns.all[:, term.at] @ amplitudes
         return total
 
