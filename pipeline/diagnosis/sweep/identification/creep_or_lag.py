@@ -41,23 +41,20 @@ often about the best of them, a fourth as far apart each time: they are then 1 %
 
 def creep_explains(identified: Identification) -> bool:
     """Whether a set with creep in place of the lag, and its spring or friction, is not clearly worse."""
-    history = identified.search.evidence.columns.rig.history
-    ramp = ramp_s(history)
     if not _may_be_other(identified, RATE):
         return False
-    long = LONGEST * identified.search.evidence.columns.rig.duration_s
-    torque = by_known_ways(history)
+    rig = identified.search.evidence.columns.rig
+    torque, ramp, long = by_known_ways(rig.history), ramp_s(rig.history), LONGEST * rig.duration_s
     made = []
     for low, power in product(SHORTEST, EXPONENTS):
         count = 1 + round(PER_DECADE * np.log10(long / (low * ramp)))
         times = np.geomspace(low * ramp, long, count)
-        made.append(lags(torque, history, times) @ (times / ramp) ** power)
+        made.append(lags(torque, rig.history, times) @ (times / ramp) ** power)
     return _is_rival(identified, _scores(identified, RATE, made))
 
 
 def lag_explains(identified: Identification) -> bool:
-    """Whether a set with one Kelvin element in place of creep, and its spring or friction, is not clearly
-    worse."""
+    """Whether a set with one Kelvin element in place of creep, and its spring, is not clearly worse."""
     if not _may_be_other(identified, CREEP):
         return False
     rig = identified.search.evidence.columns.rig
@@ -75,10 +72,8 @@ def lag_explains(identified: Identification) -> bool:
 
 def _may_be_other(identified: Identification, cause: str) -> bool:
     """Whether a cause is in the best set, and no hold under load tells it from the other one."""
-    columns, history = (
-        identified.search.evidence.columns,
-        identified.search.evidence.columns.rig.history,
-    )
+    columns = identified.search.evidence.columns
+    history = columns.rig.history
     there = cause in identified.best.owners
     return there and columns.ahead is None and not loaded_holds(history) and ramp_s(history) > 0
 
