@@ -88,15 +88,38 @@ class SweepFit:
         the gap."""
         p, (slope, gap) = self.rig.prediction, np.array(places) + np.arange(2)[:, None]
         mean, covariance = self.posterior.mean, self.posterior.covariance
-        std = [sqrt(max(covariance[np.ix_(at, at)].sum(), 0.0)) for at in (slope, gap)]
+        of_gap = self._mean_of_own_gaps()
+        of_gap[gap] = 1.0
+        std = [
+            sqrt(max(x, 0.0))
+            for x in (covariance[np.ix_(slope, slope)].sum(), of_gap @ covariance @ of_gap)
+        ]
         wind_up = 2 * float(np.abs(self.added(HARDENING)).max(initial=0.0))
         return Calibration(
             Estimate(
-                p.gap_arcsec + float(mean[gap].sum()), hypot(std[1], GAP_BESIDE_WIND_UP * wind_up)
+                p.gap_arcsec + float(of_gap @ mean), hypot(std[1], GAP_BESIDE_WIND_UP * wind_up)
             ),
             bool(self.posterior.terms),
             Estimate(p.compliance + float(mean[slope].sum()), std[0]),
         )
+
+    def _mean_of_own_gaps(self) -> np.ndarray:
+        """(p,) of the mean gap over cycles or positions with gaps of their own, per unit of each amplitude.
+
+        Beside the gap of the first one, which the terms begin from.
+        """
+        history, at = self.rig.history, self.posterior.base_count
+        levels = {"cycle": history.cycle, "input_angle_deg": history.input_angle_deg}
+        loaded = history.sign != 0
+        weight = np.zeros(len(self.posterior.mean))
+        for term in self.regressors:
+            level = levels.get(term.channel)
+            if term.form is not None and term.form.kind == "own_gap" and level is not None:
+                gap = 2 * history.sign[:, None] * self.evidence.columns.all[:, term.at]
+                _, first = np.unique(level[loaded], return_index=True)
+                weight[at : at + term.width] = gap[loaded][first].mean(axis=0)
+            at += term.width
+        return weight
 
     def measured_rig(self, mean: np.ndarray | None = None) -> FitContext:
         """The rig with compliance and gap as measured."""

@@ -1,6 +1,6 @@
 """Gaps that differ from cycle to cycle, or from position to position, without a law: how far they scatter.
 
-The calibrated gap is their mean (`../nuisance/channel_nuisance.py`).
+The calibrated gap is their mean (`../evidence/fit.py`).
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ def own_gaps(explained: ExplainedSweep, unexplained: Sequence[Unexplained]) -> I
         gap = 2 * history.sign * fit.added_by_form(f"?{found.channel}", form.kind)
         _, first = np.unique(level[loaded], return_index=True)
         each = gap[loaded][first]
+        each -= each.mean()
         yield OwnGaps(
             found.channel, form, float(each.min()), float(each.max()), float(each.std(ddof=1))
         )

@@ -44,12 +44,3 @@ def levels(values: np.ndarray, most: int = FEW_LEVELS) -> np.ndarray:
     else:
         index = np.searchsorted(seen, values)
     return np.column_stack([index == i for i in range(1, max(2, index.max() + 1))]).astype(float)
-
-
-def about_mean(columns: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(n, k) columns that depend on a channel alone, less their means over its distinct values (n,).
-
-    Beside such columns the calibration is that of the mean of all levels, not that of the first.
-    """
-    _, first = np.unique(values, return_index=True)
-    return np.asarray(columns - columns[first].mean(axis=0))

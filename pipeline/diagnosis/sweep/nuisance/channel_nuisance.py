@@ -13,7 +13,6 @@ from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance.basis_functions import (
     MANY_LEVELS,
-    about_mean,
     less_fitted,
     levels,
     smooth,
@@ -109,13 +108,12 @@ def step_from(rig: FitContext, row: int) -> Made:
 
 
 def over_cycle(rig: FitContext) -> Made:
-    """Zero and stiffness of each cycle, and a stiffness that changes steadily or ever more slowly."""
+    """Zero, stiffness and gap of each cycle, and a stiffness that changes steadily or ever more slowly."""
     if rig.cycles < 2:
         return
     own = levels(rig.history.cycle.astype(float))
     torque = rig.history.torque_Nm / rig.largest_Nm
     yield "cycle", UnnamedForm("own_zero"), own
-    own = about_mean(own, rig.history.cycle)
     yield "cycle", UnnamedForm("own_stiffness"), own * torque[:, None]
     ramp = rig.history.cycle / (rig.cycles - 1)
     for power in (1.0, 0.5):
@@ -124,14 +122,6 @@ def over_cycle(rig: FitContext) -> Made:
             UnnamedForm("changing_stiffness"),
             (ramp**power * torque)[:, None],
         )
-
-
-def gap_over_cycle(rig: FitContext) -> Made:
-    """The gap of each cycle."""
-    if rig.cycles < 2:
-        return
-    cycle = rig.history.cycle.astype(float)
-    own = about_mean(levels(cycle), cycle)
     yield "cycle", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 
 
@@ -213,12 +203,9 @@ def over_position(rig: FitContext) -> Made:
     if angle is None or np.ptp(angle) == 0:
         return
     torque = rig.history.torque_Nm / rig.largest_Nm
-    position = np.mod(angle, 360.0)
-    own = levels(position)
+    own = levels(np.mod(angle, 360.0))
     if _telling(rig):
         yield "input_angle_deg", UnnamedForm("own_zero"), own
-    own = about_mean(own, position)
-    if _telling(rig):
         yield "input_angle_deg", UnnamedForm("own_stiffness"), own * torque[:, None]
     yield "input_angle_deg", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 

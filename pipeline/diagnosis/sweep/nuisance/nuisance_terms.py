@@ -17,7 +17,6 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
-from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.local_bend import CurveBend
@@ -27,7 +26,6 @@ from flexspline.pipeline.diagnosis.sweep.nuisance.channel_nuisance import (
     changing_friction,
     changing_gain,
     changing_stiffness,
-    gap_over_cycle,
     over_cycle,
     over_position,
     over_temperature,
@@ -190,7 +188,6 @@ NUISANCE_KINDS = (
     _NuisanceKind(changing_gain),
     _NuisanceKind(waves_and_steps, less=_of_lags),
     _NuisanceKind(over_cycle),
-    _NuisanceKind(gap_over_cycle, against=frozenset({WEAR})),
     _NuisanceKind(over_temperature),
     _NuisanceKind(over_position),
     _NuisanceKind(over_turns),
