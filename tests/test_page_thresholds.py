@@ -192,6 +192,7 @@ STATED = [
     diagnosis("temperature changes by less than {} K", thermal_clearance.STEADY_AIR_K),
     diagnosis("a thermal rival only up to {} arcsec/K", thermal_clearance.MOST_PER_K),
     diagnosis("other sets of shapes within {} nats", magnitudes.FEWEST_WEIGHT_LOGS * magnitudes.SHAPE_NATS),
+    diagnosis("only if even growth is worse by {} nats", decision.RIVAL_EVIDENCE),
     diagnosis("several amplitudes ({} % apart), rates (factor {}) or temperatures ({} K)",
               100 * (exp(held_out_splits.AMPLITUDE_LEVELS.step) - 1),
               exp(held_out_splits.RATE_LEVELS.step), held_out_splits.TEMPERATURE_LEVELS.step),

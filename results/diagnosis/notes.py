@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
@@ -14,10 +14,11 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
-from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
+from flexspline.pipeline.diagnosis.sweep.magnitudes.growth import Growth, growth_of
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
     rounding_of_angle,
@@ -25,6 +26,7 @@ from flexspline.pipeline.diagnosis.sweep.residual.rounding import (
 )
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
+from flexspline.results.diagnosis.gap_notes import gap_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.position_notes import position_notes
 from flexspline.results.diagnosis.reading import heads, lost_note, reading_notes, wrong_notes
@@ -39,6 +41,11 @@ LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
 """Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
 NOTHING_SHARE = 0.01
 """Of the simulated bend: a record that has less of it has none."""
+GROWTH: Mapping[Growth, str] = {
+    "levels_off": "levels off",
+    "slows_down": "slows down",
+    "accelerates": "accelerates",
+}
 NOT_SOUGHT = (
     "no input of the gear was fitted to the difference: this needs one unit that was loaded and unloaded in "
     "both directions, at three torques or more"
@@ -62,7 +69,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     return (
         *_wrong_readings(diagnosis),
         *_ratios(diagnosis.causes),
-        *_mean_rates(diagnosis.causes, diagnosis.model),
+        *_mean_rates(diagnosis.sweep, diagnosis.causes),
         *reading_notes(diagnosis.measurement.read_as),
         *against,
         *inputs,
@@ -115,23 +122,16 @@ def _ratios(causes: Iterable[NamedCause]) -> list[str]:
     ]
 
 
-def _mean_rates(causes: Iterable[NamedCause], model: ExtendedModel | None) -> list[str]:
+def _mean_rates(analysis: SweepAnalysis | None, causes: Iterable[NamedCause]) -> list[str]:
     """Of what grows at another rate later, that its size is the mean over the record."""
-    lines = []
-    for c in causes:
-        shapes = [e.shape for e in model.elements.get(c.id, ())] if model else []
-        if c.id not in (WEAR, DRIFT):
-            continue
-        if any(s.get("run_in_cycles", 0.0) > 0 or s.get("settling_s", 0.0) > 0 for s in shapes):
-            how = "the growth levels off"
-        elif any(s["exponent"] < 1 for s in shapes):
-            how = "the growth slows down"
-        elif any(s["exponent"] > 1 for s in shapes):
-            how = "the growth accelerates"
-        else:
-            continue
-        lines.append(f"size of {title_of(c.id)}: mean over the record; {how}")
-    return lines
+    if analysis is None:
+        return []
+    fit = analysis.explained.identified.fit
+    return [
+        f"size of {title_of(c.id)}: mean over the record; the growth {GROWTH[growth]}"
+        for c in causes
+        if c.id in (WEAR, DRIFT) and (growth := growth_of(fit, c.id)) is not None
+    ]
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -141,6 +141,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
         return (
             *unit_notes(diagnosis.sweep),
             *_sweep_notes(diagnosis.sweep.explained, diagnosis.causes),
+            *gap_notes(diagnosis.sweep, diagnosis.outcome.unexplained),
             *zero_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
             *position_notes(diagnosis.sweep.explained, diagnosis.outcome.unexplained),
             *_scale_notes(diagnosis.causes, diagnosis.calibration, diagnosis.prediction),

@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.holds import hold_s
+from flexspline.pipeline.diagnosis.measurement.holds import hold_s, loaded_holds
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
@@ -42,6 +42,9 @@ twist when the hold ends, and counts as a lag. With 0.15 for spread elements, on
 creep."""
 SHORTEST_HOLD = 0.06
 """Shortest hold, over the time of a ramp from zero. A shorter rest is a turn of the torque. Judgement."""
+AT_REST_RATIO = 10.0
+"""Longest retardation time over the shortest, at least, where torque is held at zero alone. There a single
+Kelvin element is a lag beside a spring, whatever its time, and so is one of a narrower spread. Judgement."""
 PER_DECADE = 3
 """Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
 DECADE_ROWS = np.array([0.1, 1.0])
@@ -85,8 +88,10 @@ class Creep(Cause):
         if rig.duration_s <= 0 or hold < SHORTEST_HOLD * ramp or hold == 0:
             return []
         long = max(10 * hold, rig.duration_s)
+        loaded = bool(loaded_holds(rig.history))
+        common = {"hold_s": hold} if loaded else {"hold_s": hold, "least_ratio": AT_REST_RATIO}
         shapes: list[Shape] = [
-            {"shortest_s": low, "longest_s": long, "exponent": n, "hold_s": hold}
+            {"shortest_s": low, "longest_s": long, "exponent": n, **common}
             for n in EXPONENTS
             for low in sorted({hold / part for part in HOLD_DIVISORS})
         ]
@@ -95,11 +100,11 @@ class Creep(Cause):
                 "shortest_s": hold / part,
                 "longest_s": ENDS_WITHIN * hold,
                 "exponent": ENDING_EXPONENT,
-                "hold_s": hold,
+                **common,
             }
             for part in ENDING_DIVISORS
         ]
-        for share in SINGLE_TIMES:
+        for share in SINGLE_TIMES if loaded else ():
             tau = share * hold
             if tau > LONGER_THAN_LAG * ramp:
                 shapes.append(
@@ -123,7 +128,8 @@ class Creep(Cause):
     def possible(self, shape: Shape) -> bool:
         low, high = shape["shortest_s"], shape["longest_s"]
         long_enough = high > LEAST_LONGEST * shape["hold_s"]
-        return low <= high and long_enough and shape["exponent"] <= STEEPEST
+        wide_enough = high >= shape.get("least_ratio", 1.0) * low
+        return wide_enough and long_enough and shape["exponent"] <= STEEPEST
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, weight = self._kelvin(shape)

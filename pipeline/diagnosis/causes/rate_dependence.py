@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, FitContext, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.holds import hold_s
+from flexspline.pipeline.diagnosis.measurement.holds import loaded_holds
 from flexspline.pipeline.diagnosis.measurement.ramps import (
     ramp_s,
     shortest_lag_s,
@@ -68,7 +68,7 @@ class RateDependence(Cause):
             "deadband_Nm": NOISE_LEFT * deadband_Nm(rig.history),
         }  # fmt: skip
         shares = list(LAG_SHARES)
-        if hold_s(rig.history) == 0:
+        if not loaded_holds(rig.history):
             longest = LONGEST_SHARE * slowest_ramp_s(rig.history) / ramp
             shares += [s for s in LONGER_SHARES if s <= longest]
             common["longest_s"] = max(longest, shares[-1]) * ramp

@@ -1,4 +1,4 @@
-"""Holds: rows at constant torque between two moves."""
+"""Holds: rows at constant torque between two moves, under load or at rest."""
 
 from __future__ import annotations
 
@@ -41,6 +41,9 @@ AROUND_ROWS = 20
 """Rows of the mean torque before and after a gap between two runs. The mean is known to a fifth of the
 noise."""
 
+REST_SHARE = 0.05
+"""Of the largest torque: below it a hold is a rest. Under load as small, twist hardly grows. Judgement."""
+
 
 @once
 def holds(history: History) -> list[np.ndarray]:
@@ -81,6 +84,12 @@ def holds(history: History) -> list[np.ndarray]:
             ):
                 hold_rows.append(hold)
     return hold_rows
+
+
+def loaded_holds(history: History) -> list[np.ndarray]:
+    """Those under load: at rest a lag's twist and creep's go back, over which neither grows."""
+    least = REST_SHARE * history.largest_Nm
+    return [rows for rows in holds(history) if abs(history.torque_Nm[rows].mean()) > least]
 
 
 def _joined(

@@ -19,17 +19,22 @@ CHANNELS = ("time_s", "temperature_C", "input_angle_deg")
 
 
 def example_history(
-    largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int = 4, held: int = 12
+    largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int = 4, held: int = 12, rested: int = 0
 ) -> History:
     """A record with every channel: triangles, `held` rows of hold at either end, warming, at many positions.
+
+    And `rested` rows at zero after each triangle.
 
     A little noise on the torque, always the same: shapes may be given its size. All numbers are made up: only
     the names of a shape's parameters, and values that no record changes, are read from it.
     """
     quarter = np.arange(1, 11) / 10
     one = np.concatenate(
-        [quarter, np.ones(held), 1 - 2 * np.arange(1, 21) / 20, -np.ones(held), quarter - 1]
-    )
+        [
+            quarter, np.ones(held), 1 - 2 * np.arange(1, 21) / 20, -np.ones(held), quarter - 1,
+            np.zeros(rested),
+        ]
+    )  # fmt: skip
     n = len(one) * cycles
     noise = np.random.default_rng(0).normal(0.0, 0.002, n)
     torque = largest_Nm * (np.tile(one, cycles) + noise)
@@ -89,8 +94,9 @@ def _known(cause: Cause) -> tuple[frozenset[frozenset[str]], dict[str, frozenset
     apart = frozenset(frozenset(shape) for shape in cause.searched_apart)
     if not any(tried):
         return apart or frozenset({frozenset()}), {}
-    unheld = cause.shapes(FitContext(prediction, example_history(held=0)))
-    names = frozenset(frozenset(shape) for shapes in (*tried, unheld) for shape in shapes)
+    unheld = (example_history(held=0), example_history(held=0, rested=12))
+    others = [cause.shapes(FitContext(prediction, h)) for h in unheld]
+    names = frozenset(frozenset(shape) for shapes in (*tried, *others) for shape in shapes)
     fixed = {}
     for name in set().union(*names) - set(cause.tunable):
         one, other = ({shape[name] for shape in shapes if name in shape} for shapes in tried)

@@ -20,7 +20,10 @@ from flexspline.pipeline.diagnosis.decision import (
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.identification.creep_without_holds import creep_explains
+from flexspline.pipeline.diagnosis.sweep.identification.creep_or_lag import (
+    creep_explains,
+    lag_explains,
+)
 from flexspline.pipeline.diagnosis.sweep.identification.dashpot import dashpot_explains
 from flexspline.pipeline.diagnosis.sweep.identification.drift_or_temperature import (
     may_follow_temperature,
@@ -125,6 +128,8 @@ def _other_rivals(
         yield RATE  # of a low power, alone
     if cause == RATE and creep_explains(identified):
         yield CREEP
+    if cause == CREEP and RATE not in identified.rivals[CREEP] and lag_explains(identified):
+        yield RATE
     if cause == DRIFT and zero_moves(explained):
         yield OFFSET
 

@@ -22,6 +22,8 @@ IN_GAP = 0.1
 cycles, and a record has 10 to 20 rows within the torque's noise of the place."""
 OUTLIER_SHARE = 0.01
 """Share of the rows that are outliers of the crossing's model. Judgement."""
+FEWEST_OF_MEDIAN = 3
+"""Readings of a hold, from which their median is an outlier only if two of them are."""
 SPIKE_REACH = 6.0
 """Times the noise, beside twice the gap, over which such a row may lie: three deviations either way."""
 LEAST_WIDTH = 1e-4
@@ -148,7 +150,7 @@ class CrossingRows:
             below[first]
             + above[-1]
             - above[last]
-            + np.where(inside, self._log(own, gap[at]), 0.0).sum(axis=1)
+            + np.where(inside, self._log(own, gap[at], self._outlying[at]), 0.0).sum(axis=1)
         )
 
     @cached_property
@@ -156,10 +158,18 @@ class CrossingRows:
         """(n + 1,) sums over the rows before each, were all of them below the gap, and above it."""
         half, left, gap = self.gap_arcsec / 2, self.left_arcsec, self.gap_arcsec
         below, above = (
-            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * half, left), gap))])
+            np.concatenate(
+                [[0.0], np.cumsum(self._log(self._near(side * half, left), gap, self._outlying))]
+            )
             for side in (-1, 1)
         )
         return below, above
+
+    @cached_property
+    def _outlying(self) -> np.ndarray:
+        """(n,) probability that a row is an outlier."""
+        of_median = self.share**-2 > FEWEST_OF_MEDIAN - 0.5
+        return np.where(of_median, OUTLIER_SHARE**2, OUTLIER_SHARE)
 
     def _own(
         self, beyond: np.ndarray, share: np.ndarray, left: np.ndarray, gap: np.ndarray, blur: Blur
@@ -217,10 +227,10 @@ class CrossingRows:
         """Normal density of angles about a mean."""
         return _normal(left - mean, self.noise_arcsec)
 
-    def _log(self, own: np.ndarray, gap: np.ndarray) -> np.ndarray:
+    def _log(self, own: np.ndarray, gap: np.ndarray, outlying: np.ndarray) -> np.ndarray:
         """A row that the model does not claim lies anywhere over twice its gap."""
-        other = OUTLIER_SHARE / (2 * gap + SPIKE_REACH * self.noise_arcsec)
-        return np.asarray(np.log((1 - OUTLIER_SHARE) * own + other))
+        other = outlying / (2 * gap + SPIKE_REACH * self.noise_arcsec)
+        return np.asarray(np.log((1 - outlying) * own + other))
 
 
 def _normal(off: np.ndarray, std: np.ndarray | float) -> np.ndarray:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from math import hypot, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.structure import FormKind
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
     GaussianEvidence,
     Posterior,
@@ -44,6 +46,10 @@ class SweepFit:
 
     evidence: GaussianEvidence
     posterior: Posterior
+    memo: dict[tuple[Hashable, ...], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """Results computed from this fit and needed again (`../../measurement/once.py`)."""
 
     @property
     def rig(self) -> FitContext:
@@ -82,15 +88,38 @@ class SweepFit:
         the gap."""
         p, (slope, gap) = self.rig.prediction, np.array(places) + np.arange(2)[:, None]
         mean, covariance = self.posterior.mean, self.posterior.covariance
-        std = [sqrt(max(covariance[np.ix_(at, at)].sum(), 0.0)) for at in (slope, gap)]
+        of_gap = self._mean_of_own_gaps()
+        of_gap[gap] = 1.0
+        std = [
+            sqrt(max(x, 0.0))
+            for x in (covariance[np.ix_(slope, slope)].sum(), of_gap @ covariance @ of_gap)
+        ]
         wind_up = 2 * float(np.abs(self.added(HARDENING)).max(initial=0.0))
         return Calibration(
             Estimate(
-                p.gap_arcsec + float(mean[gap].sum()), hypot(std[1], GAP_BESIDE_WIND_UP * wind_up)
+                p.gap_arcsec + float(of_gap @ mean), hypot(std[1], GAP_BESIDE_WIND_UP * wind_up)
             ),
             bool(self.posterior.terms),
             Estimate(p.compliance + float(mean[slope].sum()), std[0]),
         )
+
+    def _mean_of_own_gaps(self) -> np.ndarray:
+        """(p,) of the mean gap over cycles or positions with gaps of their own, per unit of each amplitude.
+
+        Beside the gap of the first one, which the terms begin from.
+        """
+        history, at = self.rig.history, self.posterior.base_count
+        levels = {"cycle": history.cycle, "input_angle_deg": history.input_angle_deg}
+        loaded = history.sign != 0
+        weight = np.zeros(len(self.posterior.mean))
+        for term in self.regressors:
+            level = levels.get(term.channel)
+            if term.form is not None and term.form.kind == "own_gap" and level is not None:
+                gap = 2 * history.sign[:, None] * self.evidence.columns.all[:, term.at]
+                _, first = np.unique(level[loaded], return_index=True)
+                weight[at : at + term.width] = gap[loaded][first].mean(axis=0)
+            at += term.width
+        return weight
 
     def measured_rig(self, mean: np.ndarray | None = None) -> FitContext:
         """The rig with compliance and gap as measured."""
@@ -159,6 +188,14 @@ class SweepFit:
             total += rig.gap_arcsec / 2 * (history.sign - side) - rig.compliance * ahead.carried_Nm
         for term, amplitudes in self._amplitudes(self.posterior):
             if term.owner == owner:
+                total += self.evidence.columns.all[:, term.at] @ amplitudes
+        return total
+
+    def added_by_form(self, owner: str, kind: FormKind) -> np.ndarray:
+        """(n,) angle [arcsec] that an owner's terms without a name add, of one form."""
+        total = np.zeros(len(self.rig.history))
+        for term, amplitudes in self._amplitudes(self.posterior):
+            if term.owner == owner and term.form is not None and term.form.kind == kind:
                 total += self.evidence.columns.all[:, term.at] @ amplitudes
         return total
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Hashable
+from dataclasses import dataclass, field
+from typing import Any
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
@@ -65,6 +66,10 @@ class Identification:
     rivals: dict[str, tuple[str, ...]]
     rival_sets: dict[str, Candidate]
     evidence_nats: dict[str, float]
+    memo: dict[tuple[Hashable, ...], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """Results computed from it and needed again (`../../measurement/once.py`)."""
 
     def unnamed(self, attributed: Collection[str]) -> tuple[str, ...]:
         """Owners in the best set that are none of the `attributed` causes, found or rivals."""

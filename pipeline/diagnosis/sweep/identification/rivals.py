@@ -8,11 +8,13 @@ from math import inf, log
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
+from flexspline.pipeline.diagnosis.measurement.holds import loaded_holds
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate, Search, owned_by
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import GaussianEvidence
@@ -57,6 +59,8 @@ def rivals_of(
         rival = search.run(starts, most=len(best.terms) + MORE_OF_RIVAL)
         if other not in rival.named(evidence) or cancels_itself(evidence, rival, other):
             continue
+        if (cause, other) == (CREEP, RATE) and _is_chain(evidence, rival):
+            continue
         fit = fit_regressors(evidence, rival.terms)
         if not known_causes()[other].plausible(fit.elements()[other], evidence.columns.rig):
             continue
@@ -70,6 +74,12 @@ def rivals_of(
             )
     order = sorted(best_by_cause, key=lambda other: best_by_cause[other][0])
     return tuple(order), (best_by_cause[order[0]][1] if order else None)
+
+
+def _is_chain(evidence: GaussianEvidence, rival: Candidate) -> bool:
+    """Whether lags of several times stand for creep with nothing held under load: together they are it."""
+    lags = sum(evidence.terms[i].owner == RATE for i in rival.terms)
+    return lags > 1 and not loaded_holds(evidence.columns.rig.history)
 
 
 def _is_calibration(fit: SweepFit, owner: str) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Search
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import with_shapes
@@ -20,6 +21,7 @@ SHORTEST, LONGEST, TIMES = 0.5, 16.0, 16
 lags of four times the race's longest and more, only a parabola is left within a cycle. Judgement."""
 
 
+@once
 def long_lags(fit: SweepFit) -> OtherFits:
     """The same record with one lag of another time in the place of those found, and of a drift beside them.
 

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.decision import weights
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
     GaussianEvidence,
@@ -69,6 +70,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     return best, std
 
 
+@once
 def fits_alike(identified: Identification) -> tuple[list[SweepFit], np.ndarray]:
     """Fits of the sets of the same causes by any shapes, the best one's among them; how much each counts."""
     evidence = identified.search.evidence

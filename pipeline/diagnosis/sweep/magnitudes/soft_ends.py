@@ -13,6 +13,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.measurement.once import once
 from flexspline.pipeline.diagnosis.sweep.evidence.beam_search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.evidence.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.evidence.gaussian_evidence import (
@@ -42,6 +43,7 @@ WITHOUT = tuple(
 """Owners that soft ends may replace."""
 
 
+@once
 def soft_ends(fit: SweepFit) -> OtherFits:
     """The best fit of the same record with soft ends of the gap in place of its wind-up.
 
