@@ -53,18 +53,20 @@ def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[D
 def _slender_faults(f: Flexspline) -> Iterator[DesignError]:
     most, least = longest_length(f), f.length_mm / LONGEST_WALLS
     if most < f.length_mm <= LENGTH_mm.high:
-        long = "as no gear has a longer tube and its mesh takes minutes"
+        long = "a longer tube is in no gear, and its mesh takes minutes"
         room = lengths(least_length(f), most)
         if room is None:  # what lies along the tube is longer: the wall is wrong
             thick = lengths(least, f.ring_thickness_mm) or lengths(least, LENGTH_mm.high)
-            reason = f"must be {thick} mm: length_mm = {f.length_mm:g} is at most {LONGEST_WALLS} times it"
-            yield fault(f, "wall_thickness_mm", f"{reason}, {long}")
+            reason = (
+                f"must be {thick} mm: length_mm = {f.length_mm:g} is at most {LONGEST_WALLS} walls"
+            )
+            yield fault(f, "wall_thickness_mm", f"{reason} ({long})")
             return
         yield fault(
             f,
             "length_mm",
             f"must be {room} mm: up to {LONGEST_WALLS} times wall_thickness_mm = "
-            f"{f.wall_thickness_mm:g}, {long}; or make that at least {plain_number(least, 4)}",
+            f"{f.wall_thickness_mm:g} ({long}); or make that at least {plain_number(least, 4)}",
         )
 
 

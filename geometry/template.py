@@ -27,7 +27,7 @@ OPTIONAL: frozenset[Location] = frozenset(
 )
 """Written as comments: their absence means something."""
 
-OVERSTRESSED = "The wave generator stresses it above its fatigue limit (`flexspline run`)"
+OVERSTRESSED = "On the wave generator its peak stress is above the fatigue limit (`flexspline run`)"
 NO_REASONS: Mapping[Location, str] = {}
 
 

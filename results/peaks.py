@@ -26,11 +26,11 @@ MEANING = (
 
 def border_note(exclusion_mm: float, twice_MPa: float | None) -> str:
     """The mark, the distance left out, and what the peak is at twice of it."""
-    text = f"{BORDER}, which is {exclusion_mm:.3g} mm from an edge"
-    if twice_MPa is None:
-        return text
-    twice = quantity("torque_peak_mises_MPa").with_unit(twice_MPa)
-    return f"{text} ({twice} at {2 * exclusion_mm:.3g} mm)"
+    far = f"{exclusion_mm:.3g} mm from an edge"
+    if twice_MPa is not None:
+        twice = quantity("torque_peak_mises_MPa").with_unit(twice_MPa)
+        far += f"; {twice} at {2 * exclusion_mm:.3g} mm"
+    return f"{BORDER} ({far})"
 
 
 def at_border(key: str, figures: Mapping[str, Any]) -> bool:

@@ -156,7 +156,7 @@ def _against(measured: Estimate, simulated: float, std: float, as_open: str = NO
     if measured.std > AS_SIMULATED * std:  # another effect may take its place
         if abs(measured.value - simulated) < AS_SIMULATED_WITHIN * std:
             return f"{text} (as simulated: {as_open})"
-        if abs(measured.value - simulated) < FAR_DEVIATIONS * measured.std:
+        if abs(measured.value - simulated) < FAR_DEVIATIONS * min(measured.std, std):
             return f"{text} (simulated {plus_minus(simulated, std)}; {as_open})"
     off = signed((measured.value - simulated) / std, 1)
     return f"{text} (simulated {plus_minus(simulated, std)}, {off} standard deviations)"

@@ -67,7 +67,7 @@ def stress_bar(peak: StressPeak, beyond: bool) -> Bar:
 def stress_note(peak: StressPeak, beyond: bool) -> str:
     """One line about the colour range."""
     if peak.at_excluded_border:
-        return f"Colours end {peak.exclusion_mm:.3g} mm from sharp edges, where the stress still rises."
+        return f"Colours end at the stress {peak.exclusion_mm:.3g} mm from sharp edges; nearer, it is higher."
     if beyond:
         return "Colours end at the peak; at sharp corners the stress has no limit."
     return "Colours end at the peak."

@@ -79,7 +79,9 @@ def _mesh_of(content: ReportContent, part: str, letter: str) -> Words:
     solved = {name: s for name, s in content.stiffnesses.solved.items() if name.startswith(letter)}
     turned = [name for name, s in solved.items() if s.model == "axisymmetric"]
     if not turned:
-        return caption
+        return caption + plain(
+            " The stress picture is of this mesh; it may be finer than that of the stiffness."
+        )
     return (
         caption
         + plain(" ")

@@ -151,7 +151,7 @@ def _peaks(result: StudyResult, drawn_MPa: float | None) -> str:
         return text
     holes = " leaves out bolt holes and" if result.design_of(row).flexspline.bolt_count else ""
     return (
-        f"{text}. The study's own peak, in tables and warnings, is {stress.with_unit(own)}: its "
+        f"{text}. The study itself has {stress.with_unit(own)} for this design: its "
         f"model{holes} is solved to {percent(STUDY_STRESS_TOLERANCE)}"
     )
 

@@ -26,6 +26,8 @@ from flexspline.results.diagnosis.data_used import calibrated_sentences
         (40.0, 9.0, "40.0 ± 9.0 (simulated 60 ± 10; this record does not reduce the uncertainty)"),
         # surely another one, though not known any better
         (20.0, 9.0, "20.0 ± 9.0 (simulated 60 ± 10, −4.0 standard deviations)"),
+        # known less well than simulated, but 4 stated deviations off
+        (20.0, 19.0, "20 ± 19 (simulated 60 ± 10, −4.0 standard deviations)"),
         (40.0, 2.0, "40.0 ± 2.0 (simulated 60 ± 10, −2.0 standard deviations)"),
     ],
 )

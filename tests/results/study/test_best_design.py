@@ -199,5 +199,5 @@ def test_the_captions_say_only_what_is_drawn() -> None:
         said = str(payload_of(made))
         assert ("a bar marks the range" in said) is bars
         assert "as flexspline run computes it: peak 377" in said
-        assert "The study's own peak, in tables and warnings, is 400" in said
+        assert "The study itself has 400" in said
         assert "leaves out bolt holes and is solved to 1 %" in said
