@@ -68,8 +68,10 @@ def _is_of_the_machine(fault: Exception) -> bool:
 
 
 def largest_mesh(elements: int, most: int) -> Shortfall:
-    """The next mesh would have more elements than allowed."""
-    return Shortfall(f"the mesh has {elements} elements, and none is refined beyond {most}")
+    """The mesh has more elements than one that is refined."""
+    return Shortfall(
+        f"a mesh of more than {most} elements is not refined, and this one has {elements}"
+    )
 
 
 def last_mesh(meshes: int) -> Shortfall:

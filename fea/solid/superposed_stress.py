@@ -96,7 +96,7 @@ def superposed_field(
         (
             Stresses(mesh.nodes, stress),
             Stresses(points, on_surface),
-            _between_nodes(mesh, changed, without_cuts),
+            _between_nodes(mesh, changed, ~left_out, without_cuts),
         ),
         edges,
     )
@@ -107,11 +107,13 @@ def superposed_field(
     return SuperposedField(whole, changed)
 
 
-def _between_nodes(mesh: TetMesh, changed: np.ndarray, without_cuts: FieldWithoutCuts) -> Stresses:
+def _between_nodes(
+    mesh: TetMesh, changed: np.ndarray, counted: np.ndarray, without_cuts: FieldWithoutCuts
+) -> Stresses:
     """Return stresses at the meridian's own nodes, in planes of the mesh's nodes or at the angles that count.
 
     Beside singular edges these are much closer to each other than the mesh's. `changed` (n, 3, 3) is taken
-    from the nodes nearest in these planes.
+    from the nearest node that counts, by a mask (n,).
     """
     from scipy.spatial import cKDTree
 
@@ -126,8 +128,8 @@ def _between_nodes(mesh: TetMesh, changed: np.ndarray, without_cuts: FieldWithou
         phi = np.arctan2(y, x)[tree.query(without_cuts.places, PLANES)[1]]
     r, height = (np.broadcast_to(a[:, None], phi.shape) for a in without_cuts.places.T)
     points = np.stack([r * np.cos(phi), r * np.sin(phi), height], axis=2).reshape(-1, 3)
-    near = cKDTree(mesh.nodes).query(points)[1]
-    return Stresses(points, changed[near] + without_cuts.at(points)[1])
+    near = cKDTree(mesh.nodes[counted]).query(points)[1]
+    return Stresses(points, changed[counted][near] + without_cuts.at(points)[1])
 
 
 def _element_means(

@@ -61,7 +61,7 @@ def test_bounds_of_a_mesh_that_is_the_largest(exact: Stiffness, monkeypatch) -> 
     monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
     found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
     assert found.guaranteed
-    assert "none is refined beyond 100" in found.shortfall.words
+    assert "a mesh of more than 100 elements is not refined" in found.shortfall.words
     assert held(found, exact)
 
 
@@ -157,7 +157,7 @@ def test_the_solid_model_gives_the_last_of_its_meshes(exact, monkeypatch) -> Non
 def test_what_needs_the_tolerance_refuses_less(exact: Stiffness, monkeypatch) -> None:
     assert settled(exact) is exact
     monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
-    with pytest.raises(ToleranceError, match="none is refined beyond 100"):
+    with pytest.raises(ToleranceError, match="a mesh of more than 100 elements is not refined"):
         settled(torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE))
 
 
