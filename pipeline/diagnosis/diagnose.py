@@ -100,7 +100,8 @@ class Diagnosis:
         names = explained.prepared.sweep.units
         if len(names) < 2:
             return {}
-        return {n: calibration_of(explained, u) for u, n in enumerate(names)}
+        misread = self.sweep.misread
+        return {n: calibration_of(explained, u, misread) for u, n in enumerate(names)}
 
     @property
     def verdict(self) -> Verdict:

@@ -21,6 +21,7 @@ class SweepAnalysis:
 
     `model` is the calibrated simulation with the `causes` found, `doubt` what its predictions may be off by;
     `tests` are of what it leaves. All of it is of one unit, `apart.unit`, where units are judged `apart`.
+    `misread` says that a reading comes late, or that drag looks like one.
     """
 
     explained: ExplainedSweep
@@ -29,8 +30,9 @@ class SweepAnalysis:
     tests: tuple[ChannelTest, ...]
     causes: tuple[NamedCause, ...]
     apart: UnitsApart | None = None
+    misread: bool = False
 
     @cached_property
     def calibration(self) -> Calibration:
         """Gap and compliance as the record has them, of what its units have in common."""
-        return calibration_of(self.explained)
+        return calibration_of(self.explained, misread=self.misread)

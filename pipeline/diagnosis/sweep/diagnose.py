@@ -101,7 +101,13 @@ def diagnose_sweep(
         decision.verdict, decision.causes, decision.unexplained, gain, then, gains_at_levels=levels
     )
     return outcome, SweepAnalysis(
-        explained, written.model, written.doubt, shown.left.tests, own.causes, apart
+        explained,
+        written.model,
+        written.doubt,
+        shown.left.tests,
+        own.causes,
+        apart,
+        misread=shown.misread is not None,
     )
 
 

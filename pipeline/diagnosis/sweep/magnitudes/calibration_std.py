@@ -29,7 +29,9 @@ NEIGHBOUR_SHARE = 0.5
 """Of the way to a neighbouring law: the nearest one is found."""
 
 
-def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibration:
+def calibration_of(
+    explained: ExplainedSweep, unit: int | None = None, misread: bool = False
+) -> Calibration:
     """What the units have in common, or one unit's own, by the best set.
 
     The deviations have five parts: that of the posterior; that of the torque of friction ahead of the gap,
@@ -42,11 +44,12 @@ def calibration_of(explained: ExplainedSweep, unit: int | None = None) -> Calibr
     A wind-up near zero torque may be the soft ends of a gap (`soft_ends.py`): the deviations contain the
     distance to that explanation, as far as it is likely.
 
-    Beside terms without a name that cancel each other any compliance and gap fit. Then they are those of the
-    simulation with the named causes alone, and differ from the best set's by a deviation more.
+    Beside terms without a name that cancel each other any compliance and gap fit, and those of a record that
+    was `misread` are what a late reading makes of gap and compliance. Then they are those of the simulation
+    with the named causes alone, and differ from the best set's by a deviation more.
     """
     calibration = _of_best_set(explained, unit)
-    if terms_cancel(explained.identified):
+    if misread or terms_cancel(explained.identified):
         calibration = _both(_calibrated(without_unnamed(explained.identified), unit), calibration)
     for others in (long_lags(explained.identified.fit), soft_ends(explained.identified.fit)):
         for other, share in zip(others.fits, others.shares, strict=True):

@@ -134,6 +134,20 @@ def test_a_delay_of_the_angle_is_told_at_one_rate_and_where_rates_differ() -> No
     assert at_one.time_s == pytest.approx(delay_s, abs=ONE_RATE[0] / 100)
 
 
+@pytest.mark.usefixtures("causes_only")
+def test_a_late_reading_is_not_taken_for_the_gap() -> None:
+    """Terms without a name that follow the delay would leave a third less, and be sure of it."""
+
+    def delayed(time: np.ndarray, torque: np.ndarray) -> np.ndarray:
+        return curve(np.interp(time - 3.0, time, torque))
+
+    outcome, analysis = diagnose_sweep(rig(FOUR_RATES, delayed).sweep, PREDICTION)
+    assert isinstance(outcome.unexplained[0].structure, LateAngle)
+    assert analysis is not None
+    gap = analysis.calibration.gap_arcsec
+    assert gap.value == pytest.approx(60.0, abs=3 * gap.std)
+
+
 def test_one_filter_of_both_readings_is_told() -> None:
     filter_s = 1.0
     found = late_angle_of(
