@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet2
 
-from flexspline.fea.edges import CORNER_FACES, TET_EDGES, numbered_edges
+from flexspline.fea.edges import CORNER_FACES, TET_EDGES, face_numbers, numbered_edges
 from flexspline.fea.types import TetMesh
 
 
@@ -36,23 +36,11 @@ class CurvedMesh:
         edges, of_cells = numbered_edges(corners[:, TET_EDGES], n)
         node = np.arange(n + len(edges))
         node[n + of_cells] = mesh.cells[:, 4:]
-        facets = _facet_numbers(corners, mesh.facets[:, :3])
+        every = np.unique(
+            face_numbers(corners[:, CORNER_FACES], n)
+        )  # scikit-fem's facets, in its order
+        facets = np.searchsorted(every, face_numbers(mesh.facets[:, :3], n))
         named = {p: facets[mesh.facet_patch == i] for i, p in enumerate(mesh.patches) if p}
-        curved = MeshTet2(_by_rows(mesh.nodes[node]), _by_rows(corners), sort_t=False)
+        doflocs, t = map(np.ascontiguousarray, (mesh.nodes[node].T, corners.T))
+        curved = MeshTet2(doflocs, t, sort_t=False)
         return cls(curved.with_boundaries({p: f for p, f in named.items() if len(f)}), node)
-
-
-def _by_rows(table: np.ndarray) -> np.ndarray:
-    """(n, k) as scikit-fem takes it, (k, n)."""
-    return np.ascontiguousarray(table.T)
-
-
-def _facet_numbers(tets: np.ndarray, facets: np.ndarray) -> np.ndarray:
-    """scikit-fem's number (k,) of each facet of corners (k, 3), in rising order of their corners."""
-    n = int(tets.max()) + 1
-
-    def numbers(corners: np.ndarray) -> np.ndarray:
-        first, second, third = np.sort(corners, axis=-1).astype(np.int64).T
-        return (first * n + second) * n + third
-
-    return np.searchsorted(np.unique(numbers(tets[:, CORNER_FACES])), numbers(facets))

@@ -18,6 +18,12 @@ def edge_numbers(pairs: np.ndarray, nodes: int) -> np.ndarray:
     return np.asarray(np.minimum(a, b) * nodes + np.maximum(a, b))
 
 
+def face_numbers(corners: np.ndarray, nodes: int) -> np.ndarray:
+    """Return one number for each face of corners (..., 3), whichever comes first, rising with its corners."""
+    first, second, third = np.moveaxis(np.sort(corners, axis=-1).astype(np.int64), -1, 0)
+    return np.asarray((first * nodes + second) * nodes + third)
+
+
 def distinct_edges(pairs: np.ndarray, nodes: int) -> np.ndarray:
     """Return each of the edges (..., 2) once, as (e, 2) with the lesser node first."""
     return np.column_stack(np.divmod(np.unique(edge_numbers(pairs, nodes)), nodes))

@@ -86,7 +86,8 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
     middles = mesh.points[edges].mean(axis=1)
     middles[facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
     named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
-    quadratic = MeshTri2(_by_rows(np.vstack([mesh.points, middles])), _corners(mesh))
+    places = np.ascontiguousarray(np.vstack([mesh.points, middles]).T)
+    quadratic = MeshTri2(places, _corners(mesh))
     quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
     basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
     jacobian = basis.mapping.detDF(basis.X)
@@ -105,7 +106,7 @@ def straight(
     `boundaries` gives the segments of the outline that each name stands for.
     """
     _, facets = _edges(mesh)
-    linear = MeshTri(_by_rows(vertices), _corners(mesh)).with_boundaries(
+    linear = MeshTri(np.ascontiguousarray(vertices.T), _corners(mesh)).with_boundaries(
         _named(boundaries, mesh, facets)
     )
     return _space(Basis(linear, ElementTriP2(), intorder=degree), mesh, facets)
@@ -114,19 +115,14 @@ def straight(
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
     """Return a `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
-    mesh = MeshTri(_by_rows(vertices), old.mesh.t)
+    mesh = MeshTri(np.ascontiguousarray(vertices.T), old.mesh.t)
     basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
     return Space(basis, space.rim, space.numbers)
 
 
-def _by_rows(points: np.ndarray) -> np.ndarray:
-    """Points (n, 2) as scikit-fem takes them, (2, n)."""
-    return np.ascontiguousarray(points.T)
-
-
 def _corners(mesh: MeridianMesh) -> np.ndarray:
     """The triangles' corners (3, m), rising."""
-    return _by_rows(np.sort(mesh.triangles, axis=1))
+    return np.ascontiguousarray(np.sort(mesh.triangles, axis=1).T)
 
 
 def _edges(mesh: MeridianMesh) -> tuple[np.ndarray, np.ndarray]:

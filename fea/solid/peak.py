@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.fea.errors import SolveError
 from flexspline.fea.quadratic_triangle import lattice_values
-from flexspline.fea.solid.stress import nodal_stress, von_mises
+from flexspline.fea.solid.stress import elements_beside, nodal_stress, von_mises
 from flexspline.fea.solid.unfold import folded
 from flexspline.fea.stress_rule import judged
 from flexspline.fea.types import Elastic, SolidField, StressPeak, TetMesh
@@ -115,6 +115,5 @@ def largest_of(
 
 def _reaches(mesh: TetMesh, place: np.ndarray, edges: SharpEdges) -> bool:
     """Whether an element at the node nearest to a place (3,) [mm] goes on to a sharp edge."""
-    node = np.linalg.norm(mesh.nodes - place, axis=1).argmin()
-    beside = np.unique(mesh.cells[(mesh.cells == node).any(axis=1)])
+    beside = np.unique(mesh.cells[elements_beside(mesh, place)])
     return bool(edges.away(mesh.nodes[beside]).min() < AT_EDGE * edges.exclusion_mm)

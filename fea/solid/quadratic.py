@@ -9,6 +9,7 @@ from flexspline.fea.edges import (
     SIDES,
     TET_EDGES,
     edge_numbers,
+    face_numbers,
     numbered_edges,
 )
 from flexspline.fea.errors import MeshQualityError
@@ -22,9 +23,8 @@ thousand below it showed ten times the true stress at its nodes."""
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
     """Return the faces (k, 3), outward, that belong to one tetrahedron only."""
     faces = tets[:, CORNER_FACES].reshape(-1, 3)
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
+    numbers = face_numbers(faces, int(tets.max()) + 1)
+    _, first, count = np.unique(numbers, return_index=True, return_counts=True)
     return faces[first[count == 1]]
 
 

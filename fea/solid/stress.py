@@ -48,6 +48,12 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
     return nodal_average(len(mesh.nodes), 9, parts()).reshape(-1, 3, 3)
 
 
+def elements_beside(mesh: TetMesh, place: np.ndarray) -> np.ndarray:
+    """Return the elements (k,) at the node nearest to a place (3,) [mm]."""
+    node = np.linalg.norm(mesh.nodes - place, axis=1).argmin()
+    return np.flatnonzero((mesh.cells == node).any(axis=1))
+
+
 def misfit_beside(
     mesh: TetMesh, u: np.ndarray, material: Elastic, nodal: np.ndarray, place: np.ndarray
 ) -> float:
@@ -55,8 +61,7 @@ def misfit_beside(
 
     It is the node nearest to a place (3,) [mm]; `nodal` is `nodal_stress`.
     """
-    node = np.linalg.norm(mesh.nodes - place, axis=1).argmin()
-    beside = np.flatnonzero((mesh.cells == node).any(axis=1))
+    beside = elements_beside(mesh, place)
     cells, at_nodes = mesh.cells[beside], (NODES, np.ones(len(NODES)) / len(NODES))
     basis = basis_of(mesh.curved.mesh, beside, at_nodes)
     return float(von_mises(_stress(basis, u[cells], material) - nodal[cells]).max())

@@ -1,6 +1,6 @@
 """Torque sweeps: regressors, their evidence, the race, and what follows from it.
 
-Start in `diagnose.py`; the steps to the verdict are in `verdict.py`.
+Start in `diagnose.py`, which has all steps in order.
 
 Each folder imports from those above it, and all from the files beside this one.
 

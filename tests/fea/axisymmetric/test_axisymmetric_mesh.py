@@ -7,9 +7,11 @@ from math import pi
 import numpy as np
 import pytest
 from example_cup import CUP
+from hand_made_tube import tube
 
 from flexspline.fea.axisymmetric.bisection import refined, refined_repeatedly
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
+from flexspline.fea.axisymmetric.space import curved, straight
 from flexspline.fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
 from flexspline.geometry.outline import Meridian, Segment
 
@@ -128,3 +130,14 @@ def test_rectangles_turned_by_any_angle_are_filled():
         area = signed_areas(mesh.points, mesh.triangles)
         assert area.sum() == pytest.approx(width * height, rel=1e-9)
         assert angles(mesh.points, mesh.triangles).min() > SMALLEST_ANGLE - 1e-9
+
+
+def test_scikit_fem_need_not_put_large_meshes_in_order(caplog):
+    """It would say so on standard error, for each mesh of more than 1000 unknowns."""
+    mesh = triangulate(CUP.meridian())
+    while mesh.elements < 1000:
+        mesh = refined(mesh, np.ones(mesh.elements, bool))
+    for space in (curved(mesh, 4), straight(mesh, mesh.points, 4, {})):
+        assert space.count > 1000
+    assert len(tube(360.0, 60).curved.mesh.t.T) > 1000
+    assert caplog.messages == []

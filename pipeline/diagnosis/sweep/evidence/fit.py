@@ -109,15 +109,12 @@ class SweepFit:
         Beside the gap of the first one, which the terms begin from.
         """
         history, at = self.rig.history, self.posterior.base_count
-        levels = {"cycle": history.cycle, "input_angle_deg": history.input_angle_deg}
-        loaded = history.sign != 0
         weight = np.zeros(len(self.posterior.mean))
         for term in self.regressors:
-            level = levels.get(term.channel)
-            if term.form is not None and term.form.kind == "own_gap" and level is not None:
+            rows = first_of_levels(history, term.channel)
+            if term.form is not None and term.form.kind == "own_gap" and rows is not None:
                 gap = 2 * history.sign[:, None] * self.evidence.columns.all[:, term.at]
-                _, first = np.unique(level[loaded], return_index=True)
-                weight[at : at + term.width] = gap[loaded][first].mean(axis=0)
+                weight[at : at + term.width] = gap[rows].mean(axis=0)
             at += term.width
         return weight
 
@@ -236,6 +233,15 @@ class SweepFit:
         whole = np.hstack([columns.base, *chosen])
         variance = np.einsum("ij,jk,ik->i", whole, self.posterior.covariance, whole, optimize=True)
         return np.sqrt(np.maximum(variance, 0.0))
+
+
+def first_of_levels(history: History, channel: str | None) -> np.ndarray | None:
+    """The first row under load (k,) of each cycle or position; None of channels without gaps of their own."""
+    level = {"cycle": history.cycle, "input_angle_deg": history.input_angle_deg}.get(channel or "")
+    if level is None:
+        return None
+    loaded = np.flatnonzero(history.sign)
+    return np.asarray(loaded[np.unique(level[loaded], return_index=True)[1]])
 
 
 def fit_regressors(evidence: GaussianEvidence, terms: Sequence[int]) -> SweepFit:

@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.evidence.fit import first_of_levels
 from flexspline.pipeline.diagnosis.sweep.magnitudes.cancelling_terms import terms_cancel
 from flexspline.pipeline.diagnosis.sweep.race.race import ExplainedSweep
 
@@ -34,18 +33,14 @@ def own_gaps(explained: ExplainedSweep, unexplained: Sequence[Unexplained]) -> I
         return
     fit = explained.identified.fit
     history = fit.rig.history
-    levels = {"cycle": history.cycle, "input_angle_deg": history.input_angle_deg}
     for found in unexplained:
         forms = found.structure if isinstance(found.structure, tuple) else ()
         form = next((f for f in forms if f.kind == "own_gap"), None)
-        level = levels.get(found.channel)
-        if form is None or level is None:
+        rows = first_of_levels(history, found.channel)
+        if form is None or rows is None:
             continue
-        loaded = history.sign != 0
         gap = 2 * history.sign * fit.added_by_form(f"?{found.channel}", form.kind)
-        _, first = np.unique(level[loaded], return_index=True)
-        each = gap[loaded][first]
-        each -= each.mean()
+        each = gap[rows] - gap[rows].mean()
         yield OwnGaps(
             found.channel, form, float(each.min()), float(each.max()), float(each.std(ddof=1))
         )
